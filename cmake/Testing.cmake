@@ -1,0 +1,13 @@
+# citymesh_test(unit_heal SOURCES heal_test.cpp USES heal PRIVATE_USES ...): one gtest program, labelled by its kind.
+include(GoogleTest)
+function(citymesh_test name)
+  cmake_parse_arguments(ARG "" "KIND;TIMEOUT" "SOURCES;USES;PRIVATE_USES" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  list(TRANSFORM ARG_USES PREPEND citymesh_)
+  target_link_libraries(${name} PRIVATE ${ARG_USES} ${ARG_PRIVATE_USES} citymesh_warnings GTest::gtest GTest::gmock GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE CITYMESH_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${ARG_KIND}" TIMEOUT ${ARG_TIMEOUT})
+endfunction()

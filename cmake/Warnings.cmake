@@ -1,0 +1,9 @@
+# One INTERFACE target that all of our own code links; third-party headers are SYSTEM.
+option(CITYMESH_WERROR "Warnings are errors" OFF)
+
+add_library(citymesh_warnings INTERFACE)
+target_compile_options(citymesh_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Woverloaded-virtual
+  -Wno-missing-field-initializers
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-pedantic>  # __int128 of the exact predicates
+  $<$<BOOL:${CITYMESH_WERROR}>:-Werror>)

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/base/result.h"
+#include "core/geometry/point.h"
+
+namespace citymesh {
+
+/// A coordinate reference system by its canonical id: "EPSG:25833", compound "EPSG:25833+5783",
+/// "OGC:CRS84", "LOCAL" for an engineering CRS, "" when none is stated.
+struct Crs {
+  std::string id{};
+  bool known() const { return !id.empty() && id != "LOCAL"; }
+  friend bool operator==(const Crs&, const Crs&) = default;
+};
+
+/// Reads every spelling of srsName that CityGML and CityJSON files use (urn, compound urn, http
+/// URI, gml/srs, EPSG:n, AdV names by table). Errors: InvalidArgument naming the text.
+Result<Crs> parse_crs(std::string_view srs_name);
+
+/// What PROJ says of a CRS.
+struct CrsFacts {
+  std::string name{};
+  bool geographic = false;         ///< horizontal part in degrees
+  double horizontal_unit_m = 1.0;  ///< metres in a unit of the projected axes
+  Box3 area_of_use_deg{};          ///< x longitude, y latitude; empty when unknown
+};
+
+/// Errors: InvalidArgument when PROJ does not know the CRS.
+Result<CrsFacts> describe_crs(const Crs& crs);
+
+/// The projected CRS in metres to work in: `crs` itself, or for a geographic one the UTM zone of
+/// the same datum at `centre_deg` (x longitude, y latitude; JGD2011: EPSG:6688–6692, ETRS89:
+/// 25828–25838, WGS84: 326xx/327xx).
+Result<Crs> working_crs(const Crs& crs, const Point3& centre_deg);
+
+/// Moves coordinates between two CRSs. Axes are always x east/longitude, y north/latitude on both
+/// sides; heights stay as they are (the vertical datum is kept and named, never shifted). Not
+/// thread-safe: one per thread.
+class Transformer {
+ public:
+  static Result<Transformer> create(const Crs& from, const Crs& to);
+  Transformer(Transformer&&) noexcept;
+  Transformer& operator=(Transformer&&) noexcept;
+  ~Transformer();
+
+  bool is_identity() const;
+  /// Errors: InvalidArgument naming the first coordinate that cannot be transformed.
+  Result<void> apply(std::span<Point3> points) const;
+
+ private:
+  struct Impl;
+  explicit Transformer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace citymesh

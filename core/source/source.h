@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/base/run_context.h"
+#include "core/citymodel/building.h"
+#include "core/citymodel/crs.h"
+#include "core/citymodel/report.h"
+
+namespace citymesh {
+
+enum class BboxRule { Intersects, Centre, Within };
+
+/// A box as a request states it: axis order of the named CRS already turned to x east, y north.
+struct RequestBox {
+  double min_x = 0, min_y = 0, max_x = 0, max_y = 0;
+  std::optional<std::array<double, 2>> z_range_m{};
+  Crs crs{"OGC:CRS84"};
+};
+
+/// What to take from a source. No box and no ids: everything.
+struct BuildingQuery {
+  std::optional<RequestBox> bbox{};
+  BboxRule bbox_rule = BboxRule::Intersects;
+  std::vector<std::string> object_ids{};  ///< with a box: both must hold
+  Crs crs{};                              ///< working CRS wanted; empty: the source's
+};
+
+/// The frame and the extent of a selection, found before the first building is read.
+struct Selection {
+  Crs crs{};        ///< working CRS: projected, metres
+  Point3 origin{};  ///< whole metres, from the declared extent or the request's box, never from the
+                    ///< features found
+  std::uint64_t buildings = 0;        ///< top-level buildings that `read` will deliver
+  std::vector<InputReport> inputs{};  ///< one per file or store, in reading order
+  std::vector<std::string> warnings{};
+  std::vector<std::string> missing_ids{};  ///< of `object_ids`, those no source has
+  std::vector<std::string>
+      object_ids{};  ///< gml_id of every selected building and part, in reading order, repeated
+                     ///< ids included; from these names are made before anything is written
+};
+
+/// Takes one top-level building with its parts. Returning an error ends the reading with it.
+using BuildingSink = std::function<Result<void>(Building&&)>;
+
+/// Somewhere city models are kept: a folder of files, a database, a WFS.
+class CitySource {
+ public:
+  virtual ~CitySource() = default;
+
+  /// Errors: InvalidArgument for a box that cannot be transformed or a CRS that does not fit the
+  /// data; FailedPrecondition when the selected features disagree on the CRS and none is asked for
+  /// (lists them). An unreadable file is an InputReport with state `failed`, not an error.
+  virtual Result<Selection> select(const BuildingQuery& query, const RunContext& context) = 0;
+
+  /// Delivers the buildings of the selection in (file, offset) order. A building that cannot be
+  /// read is delivered without geometry and with the reason in `source_issues`.
+  virtual Result<void> read(const BuildingQuery& query, const Selection& selection,
+                            const BuildingSink& sink, const RunContext& context) = 0;
+};
+
+/// Limits of the readers; what exceeds them is refused with a message that names the limit.
+struct ReadLimits {
+  std::uint32_t max_depth = 256;  ///< nesting of XML elements or JSON values
+  std::uint64_t max_file_bytes = 64ull << 30;
+  std::uint64_t max_building_bytes = 512ull << 20;  ///< source text of one top-level feature
+  std::uint64_t max_points_per_building = 20'000'000;
+};
+
+struct FileSourceOptions {
+  ReadLimits limits{};
+  Crs assume_crs{};  ///< for files that state none
+};
+
+/// CityGML and CityJSON files (also .gz), found by content, not by name. Directories are searched
+/// one level deep. Errors: NotFound for a path that does not exist, PermissionDenied for one that
+/// cannot be read.
+Result<std::unique_ptr<CitySource>> open_files(std::vector<std::filesystem::path> paths,
+                                               FileSourceOptions options);
+
+}  // namespace citymesh

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/base/result.h"
+#include "core/citymodel/crs.h"
+#include "core/citymodel/mesh.h"
+#include "core/citymodel/report.h"
+
+namespace citymesh {
+
+/// One line of the table of formats.
+struct Format {
+  std::string_view key;        ///< `obj`
+  std::string_view file_name;  ///< `model.obj`
+  std::string_view media_type;
+  std::string_view sidecar;  ///< `model_binary.patches.json` or ""
+  bool float32 = false;      ///< coordinates only within 1024 m of the origin
+};
+
+std::span<const Format> formats();
+const Format* find_format(std::string_view key);  ///< nullptr when not built
+std::string format_keys();                        ///< "obj, stl, …" for messages
+
+enum class Patches { ByObject, ByType };
+
+/// What a file says about itself.
+struct Scene {
+  Crs crs{};
+  Point3 origin{};
+  std::string process{};
+  Patches patches = Patches::ByObject;
+};
+
+/// An incremental sink for one file. Memory is bounded by a building.
+class BodyWriter {
+ public:
+  virtual ~BodyWriter() = default;
+
+  /// The text of one building as it would stand in a file of its own (complete and readable). No
+  /// side effects; may be called from several threads. Errors: FailedPrecondition when the format
+  /// cannot hold the coordinates.
+  virtual Result<std::string> encode(const BuildingBodies& building) const = 0;
+
+  virtual Result<void> add(const BuildingBodies& building) = 0;
+
+  /// Completes the file under its final name. Errors: Unavailable for a full or failing disk.
+  virtual Result<void> finish() = 0;
+};
+
+Result<std::unique_ptr<BodyWriter>> open_writer(const Format& format,
+                                                const std::filesystem::path& folder,
+                                                const Scene& scene);
+
+/// report.json, report.html, picture.svg: fed building by building, completed by the totals.
+class ReportWriter {
+ public:
+  static Result<std::unique_ptr<ReportWriter>> create(const std::filesystem::path& folder,
+                                                      const Scene& scene);
+  virtual ~ReportWriter() = default;
+
+  /// `bodies` is nullptr for a dropped building.
+  virtual Result<void> add(const BuildingReport& report, const BuildingBodies* bodies) = 0;
+  virtual Result<void> finish(const RunReport& report) = 0;
+};
+
+Result<void> write_run_json(const std::filesystem::path& folder, const RunTimings& timings);
+
+}  // namespace citymesh

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/result.h"
+
+namespace citymesh {
+
+/// OGC API - Processes' states.
+enum class JobState { Accepted, Running, Successful, Failed, Dismissed };
+
+std::string_view to_string(JobState state);
+std::optional<JobState> job_state_from(std::string_view name);
+inline bool is_final(JobState state) {
+  return state != JobState::Accepted && state != JobState::Running;
+}
+
+/// Milliseconds since 1970-01-01 UTC.
+using TimeMs = std::int64_t;
+
+enum class Transmission { Value, Reference };
+
+/// What was asked for, in the one form that command line, REST and gRPC agree on.
+struct JobSpec {
+  std::string process{};
+  std::string inputs_json{};                      ///< canonical_inputs() of core/pipeline
+  std::map<std::string, Transmission> outputs{};  ///< empty: `report` plus the formats
+  bool response_document = false;                 ///< OGC `response`: raw (default) or document
+  friend bool operator==(const JobSpec&, const JobSpec&) = default;
+};
+
+struct JobProgress {
+  std::string stage{};
+  std::uint64_t done = 0;
+  std::uint64_t total = 0;
+};
+
+/// A result file as listed in a finished job.
+struct ResultFile {
+  std::string output{};  ///< id of the output: `report`, `obj`, …
+  std::string file_name{};
+  std::string media_type{};
+  std::uint64_t bytes = 0;
+};
+
+struct Job {
+  std::string id{};  ///< UUID; unguessable
+  JobSpec spec{};
+  JobState state = JobState::Accepted;
+  std::string message{};  ///< for people: stage and counts, or why it failed
+  JobProgress progress{};
+  int percent = 0;
+  std::optional<Error> error{};  ///< when failed
+  std::uint32_t attempt = 0;     ///< tries so far
+  bool dismiss_requested = false;
+  TimeMs created = 0, updated = 0;
+  std::optional<TimeMs> started{}, finished{};
+  std::vector<ResultFile> results{};  ///< when successful
+};
+
+struct JobFilter {
+  std::vector<std::string> processes{};
+  std::vector<JobState> states{};
+  std::uint32_t limit = 100;
+  std::uint32_t offset = 0;
+};
+
+}  // namespace citymesh

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/result.h"
+#include "services/jobs/job.h"
+
+namespace citymesh {
+
+/// Holds the truth about jobs. Calls are atomic and thread-safe; a change is durable when the call
+/// returns.
+class JobStore {
+ public:
+  virtual ~JobStore() = default;
+
+  virtual Result<void> insert(const Job& job) = 0;
+  virtual Result<Job> get(const std::string& id) = 0;                  ///< NotFound
+  virtual Result<std::vector<Job>> list(const JobFilter& filter) = 0;  ///< newest first
+
+  /// Applies `change` to the stored job and stores it, unless the job is final already or `attempt`
+  /// (when given) is no longer the job's attempt: then FailedPrecondition. A late worker can so
+  /// never overwrite its successor.
+  virtual Result<Job> update(const std::string& id, std::optional<std::uint32_t> attempt,
+                             const std::function<void(Job&)>& change) = 0;
+  virtual Result<void> erase(const std::string& id) = 0;
+};
+
+/// A claimed piece of work, held by a lease that heartbeats extend.
+struct Claim {
+  std::string job_id{};
+  std::uint32_t attempt = 0;  ///< 1 for the first try
+  std::string worker{};
+};
+
+/// Hands jobs to workers, each to one at a time.
+class TaskQueue {
+ public:
+  virtual ~TaskQueue() = default;
+
+  virtual Result<void> push(const std::string& job_id) = 0;
+  /// The oldest task that is free or whose lease has run out; none: empty. Waits up to `wait_ms`
+  /// for one.
+  virtual Result<std::optional<Claim>> claim(const std::string& worker, TimeMs lease_ms,
+                                             TimeMs wait_ms) = 0;
+  /// FailedPrecondition when the lease was lost to another worker.
+  virtual Result<void> heartbeat(const Claim& claim, TimeMs lease_ms) = 0;
+  virtual Result<void> done(const Claim& claim) = 0;     ///< removes the task
+  virtual Result<void> release(const Claim& claim) = 0;  ///< back to the queue at once (shutdown)
+  virtual Result<void> remove(const std::string& job_id) = 0;
+};
+
+/// Immutable result files. A job's files become visible all at once, by `commit`.
+class ResultStore {
+ public:
+  virtual ~ResultStore() = default;
+
+  /// An empty private folder for one attempt; what an earlier attempt left is gone.
+  virtual Result<std::filesystem::path> stage(const std::string& job_id, std::uint32_t attempt) = 0;
+  virtual Result<void> commit(const std::string& job_id, std::uint32_t attempt) = 0;
+  virtual Result<void> discard(const std::string& job_id, std::uint32_t attempt) = 0;
+
+  /// Bytes [offset, offset + max) of a committed file; empty at the end. NotFound. `file_name` is
+  /// never a path.
+  virtual Result<std::string> read(const std::string& job_id, const std::string& file_name,
+                                   std::uint64_t offset, std::uint64_t max_bytes) = 0;
+  virtual Result<std::uint64_t> size(const std::string& job_id, const std::string& file_name) = 0;
+  virtual Result<void> erase(const std::string& job_id) = 0;
+};
+
+}  // namespace citymesh
