@@ -22,6 +22,10 @@ inline bool is_final(JobState state) {
 
 /// Milliseconds since 1970-01-01 UTC.
 using TimeMs = std::int64_t;
+TimeMs now_ms();
+
+/// A random UUID (version 4) from the kernel's generator.
+std::string new_job_id();
 
 enum class Transmission { Value, Reference };
 
@@ -58,7 +62,8 @@ struct Job {
   std::optional<Error> error{};  ///< when failed
   std::uint32_t attempt = 0;     ///< tries so far
   bool dismiss_requested = false;
-  TimeMs created = 0, updated = 0;
+  TimeMs created = 0;
+  TimeMs updated = 0;  ///< grows with every change of the job
   std::optional<TimeMs> started{}, finished{};
   std::vector<ResultFile> results{};  ///< when successful
 };

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <condition_variable>
 #include <cstdint>
 #include <functional>
-#include <memory>
+#include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -13,8 +15,12 @@
 namespace citymesh {
 
 struct JobManagerOptions {
-  std::uint32_t max_open_jobs =
-      1000;  ///< accepted and running; more are refused with ResourceExhausted
+  /// Accepted and running; more are refused with ResourceExhausted.
+  std::uint32_t max_open_jobs = 1000;
+  /// How long `dismiss` waits for a running job to stop before it answers.
+  TimeMs dismiss_wait_ms = 1000;
+  /// How often a waiting call looks for changes that another process made.
+  TimeMs poll_ms = 250;
 };
 
 /// The verbs of the service. REST and gRPC translate to and from these and nothing else.
@@ -26,12 +32,16 @@ class JobManager {
 
   /// Checks process and inputs (canonical_inputs), stores the job and queues it. Errors: NotFound
   /// for an unknown process, InvalidArgument for inputs or outputs, ResourceExhausted.
+  /// Requested outputs that are formats are added to the input `formats`, or are the formats where
+  /// the request states none.
   Result<Job> submit(JobSpec spec);
   Result<Job> get(const std::string& id);
   Result<std::vector<Job>> list(const JobFilter& filter);
+  Result<std::uint64_t> count(const JobFilter& filter);
 
   /// An open job ends as dismissed: at once when queued, within 100 ms of own work when running. A
-  /// final job stays.
+  /// final job stays as it is and is no error. The job may still be `running` in the answer, with
+  /// `dismiss_requested`, when its worker takes longer than `dismiss_wait_ms`.
   Result<Job> dismiss(const std::string& id);
 
   /// FailedPrecondition (not ready, failed, dismissed) unless successful.
@@ -44,10 +54,24 @@ class JobManager {
   Result<Job> wait_for_change(const std::string& id, TimeMs seen_updated, TimeMs wait_ms);
 
  private:
+  struct Waiting {
+    std::condition_variable changed{};
+    std::uint64_t changes = 0;
+    std::uint32_t callers = 0;
+  };
+
+  Result<Job> wait_until(const std::string& id, TimeMs wait_ms,
+                         const std::function<bool(const Job&)>& enough);
+
   JobStore& jobs_;
   TaskQueue& queue_;
   ResultStore& results_;
   JobManagerOptions options_;
+
+  std::mutex submit_mutex_;  // counting the open jobs and adding one is a single step
+  std::mutex waiting_mutex_;
+  std::map<std::string, Waiting> waiting_;  // by job id; only jobs somebody waits for
+  JobFeed::Subscription subscription_;
 };
 
 }  // namespace citymesh

@@ -11,6 +11,7 @@
 
 #include "core/base/result.h"
 #include "services/jobs/job.h"
+#include "services/jobs/job_feed.h"
 
 namespace citymesh {
 
@@ -23,13 +24,25 @@ class JobStore {
   virtual Result<void> insert(const Job& job) = 0;
   virtual Result<Job> get(const std::string& id) = 0;                  ///< NotFound
   virtual Result<std::vector<Job>> list(const JobFilter& filter) = 0;  ///< newest first
+  /// How many jobs match; limit and offset of the filter do not count.
+  virtual Result<std::uint64_t> count(const JobFilter& filter) = 0;
 
   /// Applies `change` to the stored job and stores it, unless the job is final already or `attempt`
   /// (when given) is no longer the job's attempt: then FailedPrecondition. A late worker can so
   /// never overwrite its successor.
   virtual Result<Job> update(const std::string& id, std::optional<std::uint32_t> attempt,
                              const std::function<void(Job&)>& change) = 0;
+  /// As `update`, for the progress of a running job. Cheap: a crash may lose it.
+  virtual Result<void> set_progress(const std::string& id, std::uint32_t attempt,
+                                    const JobProgress& progress, std::string_view message,
+                                    int percent) = 0;
   virtual Result<void> erase(const std::string& id) = 0;
+
+  /// Tells of every change made through this object. Another process may change jobs unheard.
+  JobFeed& changes() { return changes_; }
+
+ private:
+  JobFeed changes_;
 };
 
 /// A claimed piece of work, held by a lease that heartbeats extend.
@@ -46,7 +59,8 @@ class TaskQueue {
 
   virtual Result<void> push(const std::string& job_id) = 0;
   /// The oldest task that is free or whose lease has run out; none: empty. Waits up to `wait_ms`
-  /// for one.
+  /// for one. The claim's attempt becomes the job's. A lease that ran out counts as a death of the
+  /// worker; after the allowed number of deaths the job is failed instead of claimed.
   virtual Result<std::optional<Claim>> claim(const std::string& worker, TimeMs lease_ms,
                                              TimeMs wait_ms) = 0;
   /// FailedPrecondition when the lease was lost to another worker.
@@ -54,6 +68,7 @@ class TaskQueue {
   virtual Result<void> done(const Claim& claim) = 0;     ///< removes the task
   virtual Result<void> release(const Claim& claim) = 0;  ///< back to the queue at once (shutdown)
   virtual Result<void> remove(const std::string& job_id) = 0;
+  virtual Result<std::uint64_t> waiting() = 0;  ///< tasks that no worker holds
 };
 
 /// Immutable result files. A job's files become visible all at once, by `commit`.

@@ -1,0 +1,202 @@
+#include "services/jobs/job_manager.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "core/pipeline/pipeline.h"
+
+namespace citymesh {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using nlohmann::json;
+
+constexpr std::string_view kReport = "report";
+constexpr const char* kFormats = "formats";
+
+template <class Specs>
+std::string ids(const Specs& specs) {
+  std::string text;
+  for (const auto& spec : specs) {
+    if (!text.empty()) text += ", ";
+    text += spec.id;
+  }
+  return text;
+}
+
+Result<void> check_outputs(const ProcessSpec& process, const JobSpec& spec) {
+  for (const auto& [output, transmission] : spec.outputs) {
+    const auto known = std::ranges::any_of(
+        process.outputs, [&](const OutputSpec& candidate) { return candidate.id == output; });
+    if (!known)
+      return fail(ErrorCode::InvalidArgument,
+                  fmt::format("outputs: '{}' is not an output of process {}; expected one of {}",
+                              output, process.id, ids(process.outputs)));
+  }
+  return {};
+}
+
+/// Requested outputs that are formats are written also when `formats` does not name them.
+std::string with_requested_formats(const ProcessSpec& process, const JobSpec& spec) {
+  const auto has_formats = std::ranges::any_of(
+      process.inputs, [](const OptionSpec& option) { return option.name == kFormats; });
+  auto inputs = json::parse(spec.inputs_json, nullptr, false);
+  if (!has_formats || !inputs.is_object()) return spec.inputs_json;
+
+  auto formats = inputs.contains(kFormats) ? inputs[kFormats] : json::array();
+  if (!formats.is_array()) return spec.inputs_json;  // canonical_inputs says what is wrong
+  for (const auto& [output, transmission] : spec.outputs)
+    if (output != kReport && std::ranges::find(formats, json(output)) == formats.end())
+      formats.push_back(output);
+  if (formats.empty()) return spec.inputs_json;
+  inputs[kFormats] = std::move(formats);
+  return inputs.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+const std::vector<JobState> kOpenStates{JobState::Accepted, JobState::Running};
+
+}  // namespace
+
+JobManager::JobManager(JobStore& jobs, TaskQueue& queue, ResultStore& results,
+                       JobManagerOptions options)
+    : jobs_(jobs), queue_(queue), results_(results), options_(options) {
+  subscription_ = jobs_.changes().subscribe([this](const Job& job) {
+    const std::scoped_lock lock(waiting_mutex_);
+    const auto found = waiting_.find(job.id);
+    if (found == waiting_.end()) return;
+    ++found->second.changes;
+    found->second.changed.notify_all();
+  });
+}
+
+Result<Job> JobManager::submit(JobSpec spec) {
+  const auto* process = find_process(spec.process);
+  if (process == nullptr)
+    return fail(ErrorCode::NotFound, fmt::format("process '{}' does not exist; available: {}",
+                                                 spec.process, process_ids()));
+  if (auto checked = check_outputs(*process, spec); !checked) return checked.error();
+  auto inputs = canonical_inputs(spec.process, with_requested_formats(*process, spec));
+  if (!inputs) return inputs.error();
+  spec.inputs_json = *std::move(inputs);
+
+  Job job;
+  job.id = new_job_id();
+  job.spec = std::move(spec);
+  job.message = "queued";
+  job.created = job.updated = now_ms();
+
+  {
+    const std::scoped_lock lock(submit_mutex_);
+    const auto open = jobs_.count({.states = kOpenStates});
+    if (!open) return open.error();
+    if (*open >= options_.max_open_jobs)
+      return fail(ErrorCode::ResourceExhausted,
+                  fmt::format("{} jobs are open and at most {} may be; try again later", *open,
+                              options_.max_open_jobs));
+    if (auto stored = jobs_.insert(job); !stored) return stored.error();
+  }
+  if (auto queued = queue_.push(job.id); !queued) {
+    (void)jobs_.erase(job.id);  // never leave a job behind that nobody works on
+    return queued.error();
+  }
+  return job;
+}
+
+Result<Job> JobManager::get(const std::string& id) { return jobs_.get(id); }
+
+Result<std::vector<Job>> JobManager::list(const JobFilter& filter) { return jobs_.list(filter); }
+
+Result<std::uint64_t> JobManager::count(const JobFilter& filter) { return jobs_.count(filter); }
+
+Result<Job> JobManager::dismiss(const std::string& id) {
+  auto job = jobs_.update(id, std::nullopt, [](Job& open) {
+    open.dismiss_requested = true;
+    if (open.state == JobState::Accepted) {
+      open.state = JobState::Dismissed;
+      open.message = "dismissed before it ran";
+      open.finished = now_ms();
+    } else {
+      open.message = "dismissal requested";
+    }
+  });
+  if (!job) {
+    if (job.error().code == ErrorCode::FailedPrecondition) return jobs_.get(id);  // final already
+    return job.error();
+  }
+  if (is_final(job->state)) {
+    if (auto removed = queue_.remove(id); !removed) return removed.error();
+    return job;
+  }
+  return wait_until(id, options_.dismiss_wait_ms,
+                    [](const Job& now) { return is_final(now.state); });
+}
+
+Result<std::vector<ResultFile>> JobManager::results(const std::string& id) {
+  auto job = jobs_.get(id);
+  if (!job) return job.error();
+  switch (job->state) {
+    case JobState::Successful:
+      return std::move(job->results);
+    case JobState::Failed:
+      return fail(ErrorCode::FailedPrecondition,
+                  fmt::format("job {} failed and has no results: {}", id, job->message));
+    case JobState::Dismissed:
+      return fail(ErrorCode::FailedPrecondition,
+                  fmt::format("job {} was dismissed and has no results", id));
+    case JobState::Accepted:
+    case JobState::Running:
+      break;
+  }
+  return fail(ErrorCode::FailedPrecondition,
+              fmt::format("results of job {} are not ready: it is {}, expected successful", id,
+                          to_string(job->state)));
+}
+
+Result<std::string> JobManager::read_result(const std::string& id, const std::string& file_name,
+                                            std::uint64_t offset, std::uint64_t max_bytes) {
+  const auto files = results(id);
+  if (!files) return files.error();
+  const auto listed = std::ranges::any_of(
+      *files, [&](const ResultFile& file) { return file.file_name == file_name; });
+  if (!listed)
+    return fail(ErrorCode::NotFound, fmt::format("job {} has no result file '{}'", id, file_name));
+  return results_.read(id, file_name, offset, max_bytes);
+}
+
+Result<Job> JobManager::wait_for_change(const std::string& id, TimeMs seen_updated,
+                                        TimeMs wait_ms) {
+  return wait_until(id, wait_ms, [seen_updated](const Job& job) {
+    return job.updated > seen_updated || is_final(job.state);
+  });
+}
+
+Result<Job> JobManager::wait_until(const std::string& id, TimeMs wait_ms,
+                                   const std::function<bool(const Job&)>& enough) {
+  const auto deadline = Clock::now() + std::chrono::milliseconds(std::max<TimeMs>(wait_ms, 0));
+  std::unique_lock lock(waiting_mutex_);
+  auto& waiting = waiting_[id];
+  ++waiting.callers;
+
+  // The store is read without the lock; a change made meanwhile shows in `changes`.
+  Result<Job> job = fail(ErrorCode::Internal, "");
+  for (;;) {
+    const auto seen = waiting.changes;
+    lock.unlock();
+    job = jobs_.get(id);
+    lock.lock();
+    const auto now = Clock::now();
+    if (!job || enough(*job) || now >= deadline) break;
+    const auto next_poll = now + std::chrono::milliseconds(options_.poll_ms);
+    waiting.changed.wait_until(lock, std::min(deadline, next_poll),
+                               [&] { return waiting.changes != seen; });
+  }
+  if (--waiting.callers == 0) waiting_.erase(id);
+  return job;
+}
+
+}  // namespace citymesh
