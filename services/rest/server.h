@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "core/base/result.h"
+
+namespace citymesh {
+
+class JobManager;
+class Metrics;
+
+struct RestOptions {
+  std::string host = "127.0.0.1";  ///< address to listen on
+  std::uint16_t port = 8080;       ///< 0: any free port, which start() returns
+  std::string public_url{};        ///< base of all links; empty: http:// and the request's Host
+  std::uint64_t max_body_bytes = 1 << 20;
+  std::uint32_t max_header_bytes = 16 << 10;
+  std::uint32_t max_connections = 1024;       ///< more are answered with 503 and closed
+  std::uint64_t max_inline_bytes = 16 << 20;  ///< larger results in a document are given as links
+  unsigned io_threads = 2;
+  unsigned handler_threads = 4;  ///< store and result files are read here, never on an I/O thread
+  double header_timeout_s = 30;  ///< until the next request's header is complete, idling included
+  double body_timeout_s = 60;    ///< until a request's body is complete
+  double write_timeout_s = 60;   ///< without any progress of a response
+  double drain_timeout_s = 5;    ///< responses under way get this long when stopping
+  std::string cors_allow_origin = "*";  ///< empty: no CORS headers
+};
+
+/// OGC API - Processes 1.0 over HTTP/1.1. Translates to and from JobManager; keeps no state of its
+/// own.
+class RestServer {
+ public:
+  /// `jobs` and `metrics` must outlive the server.
+  RestServer(JobManager& jobs, Metrics& metrics, RestOptions options);
+  ~RestServer();  ///< stops
+  RestServer(const RestServer&) = delete;
+  RestServer& operator=(const RestServer&) = delete;
+
+  /// Listens and serves on threads of its own; returns the port. Errors: InvalidArgument for a host
+  /// that is no address, Unavailable when the port is taken.
+  Result<std::uint16_t> start();
+
+  /// Accepts nothing new, lets responses under way finish within `drain_timeout_s`, then closes.
+  /// May be called twice.
+  void stop();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace citymesh
