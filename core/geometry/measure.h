@@ -1,0 +1,52 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/geometry/box_tree.h"
+#include "core/geometry/point.h"
+#include "core/geometry/predicates.h"
+
+namespace citymesh {
+
+/// Six times the signed volume enclosed by a closed set of triangles, exact; positive when they
+/// face outwards.
+Int128 volume6(std::span<const GridPoint> points, std::span<const Triangle> triangles);
+
+double volume_m3(std::span<const GridPoint> points, std::span<const Triangle> triangles);
+double area_m2(std::span<const GridPoint> points, std::span<const Triangle> triangles);
+
+double distance_m(const GridPoint& a, const GridPoint& b);
+/// From a point to a closed segment; `position` (optional) receives the parameter 0 … 1 of the
+/// nearest point.
+double distance_to_segment_m(const GridPoint& p, const GridPoint& a, const GridPoint& b,
+                             double* position = nullptr);
+double distance_to_triangle_m(const GridPoint& p, const GridPoint& a, const GridPoint& b,
+                              const GridPoint& c);
+
+GridBox box_of(std::span<const GridPoint> points, const Triangle& triangle);
+
+/// Nearest distances from places to a fixed set of triangles.
+class DistanceField {
+ public:
+  DistanceField(std::span<const GridPoint> points, std::span<const Triangle> triangles);
+  /// Infinite when there are no triangles.
+  double distance_m(const GridPoint& p) const;
+
+ private:
+  std::vector<GridPoint> points_;
+  std::vector<Triangle> triangles_;
+  BoxTree tree_;
+  std::int64_t diagonal_ = 0;
+};
+
+struct Deviation {
+  double max_m = 0, mean_m = 0;
+};
+
+/// Distance between two surfaces in both directions, at their corners, edge middles and triangle
+/// centres.
+Deviation deviation(std::span<const GridPoint> points_a, std::span<const Triangle> triangles_a,
+                    std::span<const GridPoint> points_b, std::span<const Triangle> triangles_b);
+
+}  // namespace citymesh
