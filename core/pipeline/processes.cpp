@@ -1,0 +1,117 @@
+#include <array>
+
+#include "core/pipeline/pipeline.h"
+
+namespace citymesh {
+namespace {
+
+constexpr std::array<std::string_view, 3> kBboxRules{"intersects", "centre", "within"};
+constexpr std::array<std::string_view, 2> kInstallations{"drop", "keep"};
+constexpr std::array<std::string_view, 2> kOnFailure{"block", "drop"};
+constexpr std::array<std::string_view, 2> kPatches{"by_object", "by_type"};
+constexpr std::array<std::string_view, 4> kFormats{"obj", "stl", "stl_binary", "cityjson"};
+
+constexpr OptionSpec kBbox{
+    "bbox", OptionKind::BoundingBox, "null",
+    "Box to export: {\"bbox\": [minx, miny, maxx, maxy], \"crs\": uri}, axis order of the named "
+    "CRS, CRS84 when none is named. Everything when absent."};
+constexpr OptionSpec kBboxRule{
+    "bbox_rule", OptionKind::Text, "\"intersects\"",
+    "Which buildings belong to the box: the footprint touches it, the centre of the "
+    "envelope lies in it, or the whole footprint lies in it.",
+    kBboxRules};
+constexpr OptionSpec kObjectIds{
+    "object_ids", OptionKind::TextList, "[]",
+    "gml_id of the buildings wanted; with a box, both must hold. Empty: all."};
+constexpr OptionSpec kCrs{
+    "crs", OptionKind::Text, "\"\"",
+    "Working CRS of the result, for example EPSG:25833. Empty: that of the source; geographic "
+    "sources go to the UTM zone of the same datum."};
+constexpr OptionSpec kLod{
+    "lod", OptionKind::TextList, "[\"2\",\"3\",\"1\",\"0\"]",
+    "Levels of detail in order of preference; \"2\" means the highest 2.x there is."};
+constexpr OptionSpec kInstallation{
+    "installations", OptionKind::Text, "\"drop\"",
+    "Building installations: left out and counted, or kept as bodies of their own.",
+    kInstallations};
+constexpr OptionSpec kFormat{"formats", OptionKind::TextList, "[\"obj\"]", "Formats to write.",
+                             kFormats};
+constexpr OptionSpec kFailure{
+    "on_failure", OptionKind::Text, "\"block\"",
+    "What becomes of a building that cannot be healed: its LoD1 block, or dropped with the "
+    "reason.",
+    kOnFailure};
+constexpr OptionSpec kUnite{"unite_neighbours", OptionKind::Boolean, "false",
+                            "Whether buildings in contact become one body."};
+constexpr OptionSpec kPatch{
+    "patches", OptionKind::Text, "\"by_object\"",
+    "Solid names of ASCII STL: one per object and surface type, or one per surface type.",
+    kPatches};
+constexpr OptionSpec kSnap{"snap_tolerance_m",
+                           OptionKind::Number,
+                           "0.001",
+                           "Points closer than this become one point.",
+                           {},
+                           0.0001,
+                           1.0};
+constexpr OptionSpec kPlanarity{"planarity_tolerance_m",
+                                OptionKind::Number,
+                                "0.01",
+                                "Largest distance of a corner to the plane of its polygon.",
+                                {},
+                                0.0001,
+                                10.0};
+constexpr OptionSpec kDisplacement{
+    "max_displacement_m",
+    OptionKind::Number,
+    "0.1",
+    "Largest motion of a point on the rung `healed`; beyond it the next rung is tried.",
+    {},
+    0.0001,
+    10.0};
+
+constexpr std::array kExportInputs{kBbox,         kBboxRule,  kObjectIds,   kCrs,   kLod,
+                                   kInstallation, kFormat,    kFailure,     kUnite, kPatch,
+                                   kSnap,         kPlanarity, kDisplacement};
+constexpr std::array kValidateInputs{kBbox, kBboxRule, kObjectIds, kCrs, kLod, kSnap, kPlanarity};
+
+constexpr OutputSpec kReportOutput{"report", "application/json",
+                                   "What became of every building, defects and repairs included"};
+constexpr std::array kExportOutputs{
+    kReportOutput,
+    OutputSpec{"obj", "model/obj", "Wavefront OBJ, an object per body, a group per surface type"},
+    OutputSpec{"stl", "model/stl", "ASCII STL, a solid per body and surface type"},
+    OutputSpec{"stl_binary", "model/stl", "Binary STL with a list of triangle ranges beside it"},
+    OutputSpec{"cityjson", "application/city+json",
+               "CityJSON 2.0 with ids, attributes and semantics"}};
+constexpr std::array kValidateOutputs{kReportOutput};
+
+const std::array kProcesses{
+    ProcessSpec{"export-for-simulation", "Export for simulation",
+                "Selects buildings by box or id, heals them, and delivers closed, 2-manifold "
+                "meshes free of "
+                "self-intersections, with a report of what became of every building.",
+                true, kExportInputs, kExportOutputs},
+    ProcessSpec{"validate", "Validate", "Finds the defects of buildings and changes nothing.",
+                false, kValidateInputs, kValidateOutputs}};
+
+}  // namespace
+
+std::span<const ProcessSpec> processes() { return kProcesses; }
+
+const ProcessSpec* find_process(std::string_view id) {
+  for (const ProcessSpec& process : kProcesses)
+    if (process.id == id) return &process;
+  return nullptr;
+}
+
+std::string process_ids() {
+  std::string text;
+  for (const ProcessSpec& process : kProcesses) {
+    if (!text.empty()) text += ", ";
+    text += process.id;
+  }
+  return text;
+}
+
+}  // namespace citymesh
