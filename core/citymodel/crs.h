@@ -26,6 +26,7 @@ Result<Crs> parse_crs(std::string_view srs_name);
 struct CrsFacts {
   std::string name{};
   bool geographic = false;         ///< horizontal part in degrees
+  bool north_first = false;        ///< registry order is north or latitude before east or longitude
   double horizontal_unit_m = 1.0;  ///< metres in a unit of the projected axes
   Box3 area_of_use_deg{};          ///< x longitude, y latitude; empty when unknown
 };

@@ -21,6 +21,20 @@ struct Repair {
 
 inline constexpr int kOwnIssueBase = 10000;  ///< Issue::code of C101 is 10101
 
+/// Own codes, found while reading.
+namespace issue_code {
+inline constexpr int kDanglingXlink = 10101;
+inline constexpr int kCyclicXlink = 10102;
+inline constexpr int kUnreadableRing = 10103;
+inline constexpr int kNonFiniteCoordinate = 10104;
+inline constexpr int kCoordinateOutOfRange = 10105;
+inline constexpr int kUntransformableCoordinate = 10106;
+inline constexpr int kReadLimitExceeded = 10107;
+inline constexpr int kUnreadableGeometry = 10108;
+inline constexpr int kVertexIndexOutOfRange = 10109;
+inline constexpr int kUnknownCrs = 10110;
+}  // namespace issue_code
+
 /// "203 NON_PLANAR_POLYGON_DISTANCE_PLANE", "C101 DANGLING_XLINK"; the names of docs/issues.
 std::string_view issue_name(int code);
 std::string issue_code_text(int code);  ///< "203", "C101"

@@ -22,6 +22,7 @@ struct Body {
   std::string name{};    ///< file-safe, unique in the run
   std::string gml_id{};  ///< of the Building or BuildingPart
   bool is_part = false;
+  std::string lod{};  ///< of the geometry it was made from: "2", "1.2"; "" where nothing is known
   Attributes attributes{};
   TriangleMesh mesh{};
 };

@@ -1,0 +1,88 @@
+#include "core/citymodel/building.h"
+
+#include <array>
+#include <charconv>
+
+namespace citymesh {
+namespace {
+
+constexpr std::array<std::pair<SurfaceType, std::string_view>, 12> kSurfaceNames{{
+    {SurfaceType::Unknown, "Unknown"},
+    {SurfaceType::GroundSurface, "GroundSurface"},
+    {SurfaceType::WallSurface, "WallSurface"},
+    {SurfaceType::RoofSurface, "RoofSurface"},
+    {SurfaceType::ClosureSurface, "ClosureSurface"},
+    {SurfaceType::OuterCeilingSurface, "OuterCeilingSurface"},
+    {SurfaceType::OuterFloorSurface, "OuterFloorSurface"},
+    {SurfaceType::Window, "Window"},
+    {SurfaceType::Door, "Door"},
+    {SurfaceType::InteriorWallSurface, "InteriorWallSurface"},
+    {SurfaceType::CeilingSurface, "CeilingSurface"},
+    {SurfaceType::FloorSurface, "FloorSurface"},
+}};
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r\n";
+  const auto first = text.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
+template <class Number>
+std::optional<Number> whole_number_text(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+std::string_view to_string(SurfaceType type) {
+  return kSurfaceNames[static_cast<std::size_t>(type)].second;
+}
+
+std::optional<SurfaceType> surface_type_from(std::string_view name) {
+  for (const auto& [type, type_name] : kSurfaceNames)
+    if (type_name == name) return type;
+  return std::nullopt;
+}
+
+std::string to_string(Lod lod) {
+  std::string text = std::to_string(lod.major);
+  if (lod.minor >= 0) text += "." + std::to_string(lod.minor);
+  return text;
+}
+
+std::optional<Lod> lod_from(std::string_view text) {
+  const auto dot = text.find('.');
+  const auto major = whole_number_text<std::int8_t>(text.substr(0, dot));
+  if (!major || *major < 0) return std::nullopt;
+  if (dot == std::string_view::npos) return Lod{*major};
+  const auto minor = whole_number_text<std::int8_t>(text.substr(dot + 1));
+  if (!minor || *minor < 0) return std::nullopt;
+  return Lod{*major, *minor};
+}
+
+std::optional<double> number_attribute(const Attributes& attributes, std::string_view name) {
+  for (const auto& [key, value] : attributes) {
+    if (key != name) continue;
+    if (const auto* number = std::get_if<double>(&value)) return *number;
+    if (const auto* number = std::get_if<std::int64_t>(&value))
+      return static_cast<double>(*number);
+    if (const auto* text = std::get_if<std::string>(&value))
+      return whole_number_text<double>(trimmed(*text));
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+Box3 extent(const Building& building) {
+  Box3 box;
+  for (const Geometry& geometry : building.geometries)
+    for (const Point3& point : geometry.points) box.add(point);
+  for (const Building& part : building.parts) box.add(extent(part));
+  return box;
+}
+
+}  // namespace citymesh
