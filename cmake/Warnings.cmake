@@ -6,4 +6,5 @@ target_compile_options(citymesh_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Woverloaded-virtual
   -Wno-missing-field-initializers
   $<$<CXX_COMPILER_ID:GNU>:-Wno-pedantic>  # __int128 of the exact predicates
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # false alarm of g++ 12 on string concatenation (GCC PR 105651)
   $<$<BOOL:${CITYMESH_WERROR}>:-Werror>)
