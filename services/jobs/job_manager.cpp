@@ -45,11 +45,11 @@ Result<void> check_outputs(const ProcessSpec& process, const JobSpec& spec) {
 std::string with_requested_formats(const ProcessSpec& process, const JobSpec& spec) {
   const auto has_formats = std::ranges::any_of(
       process.inputs, [](const OptionSpec& option) { return option.name == kFormats; });
-  auto inputs = json::parse(spec.inputs_json, nullptr, false);
+  auto inputs = json::parse(spec.inputs_json.empty() ? "{}" : spec.inputs_json, nullptr, false);
   if (!has_formats || !inputs.is_object()) return spec.inputs_json;
 
   auto formats = inputs.contains(kFormats) ? inputs[kFormats] : json::array();
-  if (!formats.is_array()) return spec.inputs_json;  // canonical_inputs says what is wrong
+  if (formats.is_string()) formats = json::array({formats});  // one text is a list of one
   for (const auto& [output, transmission] : spec.outputs)
     if (output != kReport && std::ranges::find(formats, json(output)) == formats.end())
       formats.push_back(output);
@@ -80,7 +80,9 @@ Result<Job> JobManager::submit(JobSpec spec) {
     return fail(ErrorCode::NotFound, fmt::format("process '{}' does not exist; available: {}",
                                                  spec.process, process_ids()));
   if (auto checked = check_outputs(*process, spec); !checked) return checked.error();
-  auto inputs = canonical_inputs(spec.process, with_requested_formats(*process, spec));
+  auto inputs = canonical_inputs(spec.process, spec.inputs_json);
+  if (inputs && !spec.outputs.empty())  // what is parsed here has passed the limits already
+    inputs = canonical_inputs(spec.process, with_requested_formats(*process, spec));
   if (!inputs) return inputs.error();
   spec.inputs_json = *std::move(inputs);
 

@@ -137,7 +137,8 @@ Job read_job(const Query& row) {
   job.id = row.text(0);
   job.spec.process = row.text(1);
   job.spec.inputs_json = row.text(2);
-  for (const auto& [output, transmission] : json::parse(row.text(3)).items())
+  const auto outputs = json::parse(row.text(3));
+  for (const auto& [output, transmission] : outputs.items())
     job.spec.outputs[output] =
         transmission == "value" ? Transmission::Value : Transmission::Reference;
   job.spec.response_document = row.number(4) != 0;
@@ -155,7 +156,8 @@ Job read_job(const Query& row) {
   job.updated = row.number(16);
   job.started = row.optional_number(17);
   job.finished = row.optional_number(18);
-  for (const auto& file : json::parse(row.text(19)))
+  const auto results = json::parse(row.text(19));
+  for (const auto& file : results)
     job.results.push_back(
         {file.at("output"), file.at("file_name"), file.at("media_type"), file.at("bytes")});
   return job;
