@@ -35,16 +35,22 @@ std::vector<GateFailure> check_shell(std::span<const GridPoint> points,
 
 /// A body as a reader of the file sees it, before any welding.
 struct ParsedBody {
-  std::string name{};
+  std::string name{};            ///< as in the file: of CityJSON the object's id; "" when the file
+                                 ///< is by surface type and has no bodies
   std::vector<Point3> points{};  ///< metres from the file's origin
   std::vector<Triangle> triangles{};
-  std::vector<std::string> patches{};  ///< per triangle: the surface type in the file
+  std::vector<std::string> patches{};  ///< per triangle: the surface type in the file, "" for none
+  bool float32 = false;                ///< the file holds coordinates as float32
 };
 
 using ParsedBodySink = std::function<Result<void>(ParsedBody&&)>;
 
-/// Reads files that citymesh wrote, sharing no code with the writers. `format` is a key of the
-/// format table. Errors: DataLoss naming what is wrong and where.
+/// Reads files that citymesh wrote, sharing no code with the writers, and strictly: what a writer
+/// would not write is an error. `format` is a key of the format table. For binary STL the sidecar
+/// stands beside the file, and behind the triangles in `text`. OBJ and STL files are read body by
+/// body. A solid of `patches: by_type` comes as one body without a name. Errors: DataLoss naming
+/// what is wrong and where (line or byte); NotFound or Unavailable for a file that cannot be read;
+/// those of the sink.
 Result<void> parse_text(std::string_view format, std::string_view text, const ParsedBodySink& sink);
 Result<void> parse_file(std::string_view format, const std::filesystem::path& file,
                         const ParsedBodySink& sink);
