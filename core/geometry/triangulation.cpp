@@ -31,8 +31,15 @@ double squared_length(const GridPoint& a, const GridPoint& b) {
   return x * x + y * y + z * z;
 }
 
-/// A convex quadrilateral is cut along its shorter diagonal; none: not strictly convex in the
-/// projection.
+/// Square of the smallest height.
+double flatness(const GridPoint& a, const GridPoint& b, const GridPoint& c) {
+  const Point3 n = normal_of(a, b, c);
+  return (n.x * n.x + n.y * n.y + n.z * n.z) /
+         std::max({squared_length(a, b), squared_length(b, c), squared_length(c, a)});
+}
+
+/// A strictly convex quadrilateral is cut so that its flattest triangle is least flat; none: not
+/// strictly convex in the projection.
 std::optional<std::vector<Triangle>> split_quadrilateral(std::span<const GridPoint> points,
                                                          const std::vector<std::uint32_t>& ring,
                                                          Axis axis, bool seen_from_front) {
@@ -41,8 +48,12 @@ std::optional<std::vector<Triangle>> split_quadrilateral(std::span<const GridPoi
   const int wanted = seen_from_front ? 1 : -1;
   for (std::size_t i = 0; i < 4; ++i)
     if (orient2d(corner[i], corner[(i + 1) % 4], corner[(i + 2) % 4]) != wanted) return {};
-  if (squared_length(points[ring[0]], points[ring[2]]) <=
-      squared_length(points[ring[1]], points[ring[3]]))
+  const auto worst = [&](std::size_t i) {  // of the cut from corner i to the opposite one
+    const GridPoint &a = points[ring[i]], &b = points[ring[i + 1]], &c = points[ring[(i + 2) % 4]],
+                    &d = points[ring[(i + 3) % 4]];
+    return std::min(flatness(a, b, c), flatness(a, c, d));
+  };
+  if (worst(0) >= worst(1))
     return std::vector<Triangle>{{ring[0], ring[1], ring[2]}, {ring[0], ring[2], ring[3]}};
   return std::vector<Triangle>{{ring[1], ring[2], ring[3]}, {ring[1], ring[3], ring[0]}};
 }

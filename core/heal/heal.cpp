@@ -1,0 +1,256 @@
+#include "core/heal/heal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "core/geometry/box_tree.h"
+#include "core/geometry/triangulation.h"
+#include "core/heal/edges.h"
+#include "core/heal/grid.h"
+#include "core/heal/steps.h"
+
+namespace citymesh {
+namespace {
+
+struct HealStep {
+  std::string_view name;
+  void (*apply)(Shell&, StepContext&);
+};
+
+// Rings are clean before edges mean something; edges match before duplicates and orientation;
+// orientation agrees before free edges form loops; closing may turn an open patch into the inside
+// of a body, so orientation is found again.
+constexpr std::array kHealSteps{
+    HealStep{"snap_points", snap_points},
+    HealStep{"clean_rings", clean_rings},
+    HealStep{"insert_junctions", insert_junctions},
+    HealStep{"clean_rings", clean_rings},
+    HealStep{"drop_duplicate_faces", drop_duplicate_faces},
+    HealStep{"orient_faces", orient_faces},
+    HealStep{"close_holes", close_holes},
+    HealStep{"orient_faces", orient_faces},
+};
+
+/// Tolerances of rung `healed` after the one asked for, as long as they stay below the limit of
+/// displacement.
+constexpr std::array kWiderTolerances_m{0.005, 0.02, 0.05};
+
+bool is_opening(SurfaceType type) {
+  return type == SurfaceType::Window || type == SurfaceType::Door;
+}
+
+void drop_openings(Shell& shell) {
+  std::erase_if(shell.faces, [](const Face& face) { return is_opening(face.type); });
+}
+
+struct Soup {
+  std::vector<Triangle> triangles{};
+};
+
+/// What of a shell can be triangulated, as a reference to measure from.
+Soup triangles_of(const Shell& shell) {
+  Soup soup;
+  for (const Face& face : shell.faces)
+    if (const auto triangles = triangulate(shell.points, face.rings))
+      soup.triangles.insert(soup.triangles.end(), triangles->begin(), triangles->end());
+  return soup;
+}
+
+bool is_closed(const Shell& shell) {
+  const EdgeUses uses = edge_uses(shell);
+  return std::all_of(uses.begin(), uses.end(), [](const auto& edge) {
+    return edge.second.size() == 2 && edge.second[0].forward != edge.second[1].forward;
+  });
+}
+
+/// 2.5D: seen from above, no two upward faces overlap.
+std::string lane_of(const Shell& shell) {
+  std::vector<std::array<GridPoint2, 3>> roofs;
+  std::vector<GridBox> boxes;
+  for (const Triangle& t : triangles_of(shell).triangles) {
+    const std::array<GridPoint2, 3> flat{project(shell.points[t[0]], Axis::Z),
+                                         project(shell.points[t[1]], Axis::Z),
+                                         project(shell.points[t[2]], Axis::Z)};
+    if (orient2d(flat[0], flat[1], flat[2]) <= 0) continue;
+    GridBox box = GridBox::of({flat[0].x, flat[0].y, 0});
+    for (const GridPoint2& p : flat) box.add(GridPoint{p.x, p.y, 0});
+    roofs.push_back(flat);
+    boxes.push_back(box);
+  }
+  // Interiors of two counter-clockwise triangles are disjoint when an edge of one has the other
+  // wholly on its right.
+  const auto separates = [](const auto& s, const auto& t) {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (std::all_of(t.begin(), t.end(),
+                      [&](const GridPoint2& p) { return orient2d(s[i], s[(i + 1) % 3], p) <= 0; }))
+        return true;
+    return false;
+  };
+  const BoxTree tree(boxes);
+  for (std::uint32_t i = 0; i < roofs.size(); ++i) {
+    bool overlap = false;
+    tree.for_each_meeting(boxes[i], [&](std::uint32_t j) {
+      overlap =
+          overlap || (j > i && !separates(roofs[i], roofs[j]) && !separates(roofs[j], roofs[i]));
+    });
+    if (overlap) return "3d";
+  }
+  return "2.5d";
+}
+
+bool matches(Lod have, Lod wanted) {
+  return have.major == wanted.major && (wanted.minor < 0 || have.minor == wanted.minor);
+}
+
+/// Geometries of the first level that the building has, solids before stated surfaces before
+/// assembled ones, the finest minor level first.
+std::vector<const Geometry*> choose(const Building& building, std::span<const Lod> lod) {
+  for (const Lod& wanted : lod) {
+    std::vector<const Geometry*> found;
+    for (const Geometry& geometry : building.geometries)
+      if (matches(geometry.lod, wanted) && !geometry.polygons.empty()) found.push_back(&geometry);
+    if (found.empty()) continue;
+    const auto rank = [](const Geometry* g) {
+      return g->footprint ? 3 : !g->solids.empty() ? 0 : g->assembled ? 1 : 2;
+    };
+    std::stable_sort(found.begin(), found.end(), [&](const Geometry* a, const Geometry* b) {
+      if (a->lod.minor != b->lod.minor) return a->lod.minor > b->lod.minor;
+      return rank(a) < rank(b);
+    });
+    std::erase_if(found, [&](const Geometry* g) { return g->lod != found[0]->lod; });
+    return found;
+  }
+  return {};
+}
+
+class Ladder {
+ public:
+  Ladder(const Building& building, const HealOptions& options, const DeliveryGate& gate,
+         const RunContext& context)
+      : building_(building), options_(options), gate_(gate), context_(context) {}
+
+  Healed climb(std::span<const Lod> lod) {
+    const auto geometries = choose(building_, lod);
+    if (geometries.empty()) {
+      result_.reason = "no_geometry";
+      return std::move(result_);
+    }
+    result_.lod = geometries[0]->lod;
+    std::optional<Gridded> first;
+    for (const Geometry* geometry : geometries) {
+      auto gridded = grid(building_, *geometry);
+      if (const Issue* issue = std::get_if<Issue>(&gridded)) {
+        result_.issues.push_back(*issue);
+        continue;
+      }
+      Gridded& input = std::get<Gridded>(gridded);
+      if (!first) {
+        first = input;
+        if (is_closed(input.shell))
+          result_.volume_before_m3 =
+              volume_m3(input.shell.points, triangles_of(input.shell).triangles);
+      }
+      if (geometry->footprint) continue;
+      if (try_as_is(input) || try_healed(input)) return std::move(result_);
+      if (context_.stopped()) break;
+    }
+    if (!first)
+      result_.reason = "no_geometry";
+    else if (!try_block(*first, geometries[0]->footprint) && result_.reason.empty())
+      result_.reason = "not_healed";
+    return std::move(result_);
+  }
+
+ private:
+  bool try_as_is(const Gridded& input) {
+    Shell shell = input.shell;
+    type_faces(shell);
+    std::vector<Issue> issues = gate_(shell);
+    if (result_.issues.empty()) result_.issues = issues;
+    if (!issues.empty()) return false;
+    result_.max_displacement_m = input.max_displacement_m;
+    return deliver("as_is", std::move(shell));
+  }
+
+  bool try_healed(const Gridded& input) {
+    const bool has_openings = std::any_of(input.shell.faces.begin(), input.shell.faces.end(),
+                                          [](const Face& face) { return is_opening(face.type); });
+    std::vector<double> tolerances_m{options_.snap_tolerance_m};
+    for (const double wider : kWiderTolerances_m)
+      if (wider > options_.snap_tolerance_m && wider <= options_.max_displacement_m)
+        tolerances_m.push_back(wider);
+    for (const double tolerance_m : tolerances_m)
+      for (int without_openings = 0; without_openings <= (has_openings ? 1 : 0);
+           ++without_openings) {
+        if (context_.stopped()) return false;
+        Shell shell = input.shell;
+        StepContext step{tolerance_m, std::max(options_.planarity_tolerance_m, tolerance_m), {}, 0};
+        if (without_openings) {
+          // An opening in front of or behind its wall leaves the wall open: the wall is closed
+          // instead.
+          drop_openings(shell);
+          step.note("openings_closed", building_.gml_id);
+        }
+        for (const HealStep& heal_step : kHealSteps) heal_step.apply(shell, step);
+        type_faces(shell);
+        if (shell.faces.empty() || step.max_displacement_m > options_.max_displacement_m) continue;
+        if (!gate_(shell).empty()) continue;
+        result_.max_displacement_m = std::max(input.max_displacement_m, step.max_displacement_m);
+        result_.repairs = std::move(step.repairs);
+        result_.deviation = {result_.max_displacement_m, 0};
+        return deliver("healed", std::move(shell));
+      }
+    return false;
+  }
+
+  bool try_block(const Gridded& input, bool footprint_only) {
+    if (!options_.block_on_failure) return false;
+    Blocks blocks = lod1_blocks(input.shell, footprint_only,
+                                number_attribute(building_.attributes, "measuredHeight"));
+    if (blocks.candidates.empty()) result_.reason = blocks.reason;
+    for (Shell& shell : blocks.candidates) {
+      if (context_.stopped()) return false;
+      if (!gate_(shell).empty()) continue;
+      const Soup before = triangles_of(input.shell), after = triangles_of(shell);
+      result_.deviation =
+          deviation(input.shell.points, before.triangles, shell.points, after.triangles);
+      result_.repairs = {{"replaced_by_block", building_.gml_id, result_.deviation.max_m}};
+      return deliver("lod1_block", std::move(shell));
+    }
+    return false;
+  }
+
+  bool deliver(std::string rung, Shell shell) {
+    result_.rung = std::move(rung);
+    result_.lane = lane_of(shell);
+    result_.shell = std::move(shell);
+    return true;
+  }
+
+  const Building& building_;
+  const HealOptions& options_;
+  const DeliveryGate& gate_;
+  const RunContext& context_;
+  Healed result_;
+};
+
+}  // namespace
+
+void StepContext::note(std::string kind, std::string where, double displacement_m) {
+  max_displacement_m = std::max(max_displacement_m, displacement_m);
+  repairs.push_back({std::move(kind), std::move(where), displacement_m});
+}
+
+std::string describe(const GridPoint& p) {
+  const Point3 m = to_metres(p);
+  return fmt::format("({:.4f} {:.4f} {:.4f})", m.x, m.y, m.z);
+}
+
+Healed heal(const Building& building, std::span<const Lod> lod, const HealOptions& options,
+            const DeliveryGate& gate, const RunContext& context) {
+  return Ladder(building, options, gate, context).climb(lod);
+}
+
+}  // namespace citymesh

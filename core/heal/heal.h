@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/run_context.h"
+#include "core/citymodel/building.h"
+#include "core/citymodel/issue.h"
+#include "core/citymodel/shell.h"
+#include "core/geometry/measure.h"
+
+namespace citymesh {
+
+struct HealOptions {
+  double snap_tolerance_m = 0.001;  ///< points closer than this become one point
+  double planarity_tolerance_m =
+      0.01;                          ///< largest distance of a corner to the plane of a closed hole
+  double max_displacement_m = 0.10;  ///< limit of rung `healed`; beyond it the next rung is tried
+  bool block_on_failure = true;      ///< whether rung `lod1_block` may be used
+};
+
+/// The judge of a rung: what keeps this shell from being delivered, as issues; empty when it is
+/// fit. Given by the caller, who measures the shell as it would be written.
+using DeliveryGate = std::function<std::vector<Issue>(const Shell&)>;
+
+/// The end of one building or part on the ladder.
+struct Healed {
+  std::string rung{};           ///< as_is, healed, lod1_block; empty when dropped
+  std::string reason{};         ///< when dropped: no_geometry, no_height, not_healed
+  std::string lane{};           ///< 2.5d: no two roof surfaces above each other; else 3d
+  Lod lod{};                    ///< of the geometry taken
+  Shell shell{};                ///< passed the gate; surfaces typed, oriented outwards
+  std::vector<Issue> issues{};  ///< what kept the geometry from going out as it was
+  std::vector<Repair> repairs{};
+  double max_displacement_m = 0;
+  Deviation deviation{};  ///< two-sided distance to the input, except to faces that close holes
+  std::optional<double> volume_before_m3{};  ///< where the input is closed
+};
+
+/// Climbs the ladder until the gate holds: the geometry as it is after gridding; healed (snapping,
+/// ring cleaning, T-junctions, duplicate faces, orientation, planar holes) with growing tolerances;
+/// the LoD1 block of the contract. Takes the first level of detail of `lod` that the building has.
+/// Never throws for bad geometry.
+Healed heal(const Building& building, std::span<const Lod> lod, const HealOptions& options,
+            const DeliveryGate& gate, const RunContext& context);
+
+}  // namespace citymesh

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/citymodel/building.h"
+#include "core/citymodel/issue.h"
+#include "core/citymodel/shell.h"
+#include "core/geometry/predicates.h"
+
+namespace citymesh {
+
+/// What a healing step may do and where it writes down what it did.
+struct StepContext {
+  double tolerance_m = 0.001;           ///< of snapping and T-junctions in this attempt
+  double planarity_tolerance_m = 0.01;  ///< of holes
+  std::vector<Repair> repairs{};
+  double max_displacement_m = 0;
+
+  void note(std::string kind, std::string where, double displacement_m = 0);
+};
+
+// Every step takes a shell that may be defective and leaves one that is no worse. Order matters:
+// see heal.cpp.
+
+/// Points within the tolerance of an earlier one (in x, y, z order) take its place.
+void snap_points(Shell& shell, StepContext& context);
+
+/// Drops repeated corners and spikes, splits rings that touch themselves, drops rings of fewer than
+/// three corners and faces without an exterior (S3-10 b).
+void clean_rings(Shell& shell, StepContext& context);
+
+/// Puts vertices that lie on the edge of a face into that edge (S2-04).
+void insert_junctions(Shell& shell, StepContext& context);
+
+/// Of faces over the same corners keeps one, or none where they are an inner wall (S2-04, S3-14).
+void drop_duplicate_faces(Shell& shell, StepContext& context);
+
+/// Turns faces so that neighbours agree and every component faces outwards (cavities inwards).
+void orient_faces(Shell& shell, StepContext& context);
+
+/// Closes loops of free edges that are planar, or fall apart into planar ones along a chord; nested
+/// loops in one plane become holes of the new face.
+void close_holes(Shell& shell, StepContext& context);
+
+/// Gives faces without a type one by their normal: up a roof, down a ground, else a wall.
+void type_faces(Shell& shell);
+
+/// The LoD1 blocks of the contract, the likeliest first: later ones are simpler outlines of the
+/// same extent. Empty with `reason` no_geometry or no_height when there is none.
+struct Blocks {
+  std::vector<Shell> candidates{};
+  std::string reason{};
+};
+Blocks lod1_blocks(const Shell& shell, bool footprint_only,
+                   std::optional<double> measured_height_m);
+
+std::string describe(const GridPoint& p);  ///< "(x y z)" in metres from the origin
+
+}  // namespace citymesh
