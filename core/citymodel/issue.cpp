@@ -56,6 +56,11 @@ constexpr std::array kIssueNames{
     IssueName{issue_code::kUnreadableGeometry, "C108 UNREADABLE_GEOMETRY"},
     IssueName{issue_code::kVertexIndexOutOfRange, "C109 VERTEX_INDEX_OUT_OF_RANGE"},
     IssueName{issue_code::kUnknownCrs, "C110 UNKNOWN_CRS"},
+    IssueName{issue_code::kEulerFormula, "C111 EULER_FORMULA"},
+    IssueName{issue_code::kDegenerateTriangle, "C112 DEGENERATE_TRIANGLE"},
+    IssueName{issue_code::kTJunction, "C113 T_JUNCTION"},
+    IssueName{issue_code::kDuplicateFace, "C114 DUPLICATE_FACE"},
+    IssueName{issue_code::kEncodingLoss, "C115 ENCODING_LOSS"},
 };
 
 static_assert(std::is_sorted(kIssueNames.begin(), kIssueNames.end(),

@@ -21,7 +21,7 @@ struct Repair {
 
 inline constexpr int kOwnIssueBase = 10000;  ///< Issue::code of C101 is 10101
 
-/// Own codes, found while reading.
+/// Own codes. The first ones are found while reading.
 namespace issue_code {
 inline constexpr int kDanglingXlink = 10101;
 inline constexpr int kCyclicXlink = 10102;
@@ -33,6 +33,12 @@ inline constexpr int kReadLimitExceeded = 10107;
 inline constexpr int kUnreadableGeometry = 10108;
 inline constexpr int kVertexIndexOutOfRange = 10109;
 inline constexpr int kUnknownCrs = 10110;
+// Found by the delivery gates where val3dity has no number.
+inline constexpr int kEulerFormula = 10111;
+inline constexpr int kDegenerateTriangle = 10112;
+inline constexpr int kTJunction = 10113;
+inline constexpr int kDuplicateFace = 10114;
+inline constexpr int kEncodingLoss = 10115;
 }  // namespace issue_code
 
 /// "203 NON_PLANAR_POLYGON_DISTANCE_PLANE", "C101 DANGLING_XLINK"; the names of docs/issues.

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 
+#include "core/citymodel/edges.h"
+#include "core/citymodel/grid.h"
 #include "core/geometry/box_tree.h"
 #include "core/geometry/triangulation.h"
-#include "core/heal/edges.h"
-#include "core/heal/grid.h"
 #include "core/heal/steps.h"
 
 namespace citymesh {

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <map>
 
+#include "core/citymodel/edges.h"
 #include "core/geometry/measure.h"
 #include "core/geometry/triangulation.h"
-#include "core/heal/edges.h"
 #include "core/heal/steps.h"
 
 namespace citymesh {

@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "core/citymodel/edges.h"
 #include "core/geometry/triangulation.h"
-#include "core/heal/edges.h"
 #include "core/heal/steps.h"
 
 namespace citymesh {
@@ -23,17 +25,6 @@ double volume_under(const Shell& shell, const Face& face, const GridPoint& base)
 }
 
 }  // namespace
-
-EdgeUses edge_uses(const Shell& shell) {
-  EdgeUses uses;
-  for (std::uint32_t f = 0; f < shell.faces.size(); ++f)
-    for (const Ring& ring : shell.faces[f].rings)
-      for (std::size_t i = 0; i < ring.size(); ++i) {
-        const std::uint32_t a = ring[i], b = ring[(i + 1) % ring.size()];
-        uses[{std::min(a, b), std::max(a, b)}].push_back({f, a < b});
-      }
-  return uses;
-}
 
 void orient_faces(Shell& shell, StepContext& context) {
   // Holes run against their exterior.

@@ -1,4 +1,4 @@
-#include "core/heal/grid.h"
+#include "core/citymodel/grid.h"
 
 #include <fmt/format.h>
 
@@ -20,7 +20,8 @@ std::variant<Gridded, Issue> grid(const Building& building, const Geometry& geom
     const Point3& p = geometry.points[i];
     constexpr double kLimit_m = static_cast<double>(kGridLimit) * kGridStep_m;
     if (!(std::abs(p.x) < kLimit_m && std::abs(p.y) < kLimit_m && std::abs(p.z) < kLimit_m))
-      return Issue{issue_code::kCoordinateOutOfRange, fmt::format("({} {} {})", p.x, p.y, p.z), p.x};
+      return Issue{issue_code::kCoordinateOutOfRange, fmt::format("({} {} {})", p.x, p.y, p.z),
+                   p.x};
     const GridPoint g{std::llround(p.x * kGridStepsPerMetre),
                       std::llround(p.y * kGridStepsPerMetre),
                       std::llround(p.z * kGridStepsPerMetre)};
