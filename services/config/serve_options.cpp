@@ -1,0 +1,95 @@
+#include "services/config/serve_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <thread>
+
+namespace citymesh {
+namespace {
+
+constexpr double kLongestLease_s = 3600;
+constexpr unsigned kMostThreads = 256;
+constexpr std::array<std::string_view, 4> kLogLevels{"debug", "info", "warning", "error"};
+
+template <class Value>
+Error wrong(std::string_view name, const Value& value, std::string_view expected) {
+  return fail(ErrorCode::InvalidArgument,
+              fmt::format("{} is {}, expected {}", name, value, expected));
+}
+
+}  // namespace
+
+Result<Endpoint> parse_endpoint(std::string_view text) {
+  const auto refuse = [&] {
+    return fail(ErrorCode::InvalidArgument,
+                fmt::format("'{}' is no address to listen on; expected HOST:PORT, for example "
+                            "127.0.0.1:8080 or [::1]:8080",
+                            text));
+  };
+  Endpoint endpoint{"127.0.0.1", 0};
+  auto port = text;
+  if (const auto colon = text.rfind(':'); colon != std::string_view::npos) {
+    auto host = text.substr(0, colon);
+    port = text.substr(colon + 1);
+    if (host.starts_with('[') && host.ends_with(']'))
+      host = host.substr(1, host.size() - 2);
+    else if (host.find(':') != std::string_view::npos)
+      return refuse();
+    if (host.empty()) return refuse();
+    endpoint.host = host == "localhost" ? "127.0.0.1" : host;
+  }
+  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), endpoint.port);
+  if (port.empty() || error != std::errc{} || end != port.data() + port.size()) return refuse();
+  return endpoint;
+}
+
+std::string to_string(const Endpoint& endpoint) {
+  const auto ipv6 = endpoint.host.find(':') != std::string::npos;
+  return fmt::format("{}{}{}:{}", ipv6 ? "[" : "", endpoint.host, ipv6 ? "]" : "", endpoint.port);
+}
+
+bool is_loopback(const Endpoint& endpoint) {
+  return endpoint.host.starts_with("127.") || endpoint.host == "::1";
+}
+
+Result<void> check(const ServeOptions& options) {
+  if (options.data.empty())
+    return fail(ErrorCode::InvalidArgument, "no data given; expected --data with a file or folder");
+  for (const auto& path : options.data) {
+    std::error_code error;
+    if (!std::filesystem::exists(path, error))
+      return fail(ErrorCode::NotFound,
+                  fmt::format("--data '{}' does not exist; expected a file or folder of CityGML or "
+                              "CityJSON",
+                              path.string()));
+  }
+  if (options.workers < 1 || options.workers > kMostThreads)
+    return wrong("--workers", options.workers, fmt::format("1 to {}", kMostThreads));
+  if (options.threads > kMostThreads)
+    return wrong("--threads", options.threads, fmt::format("0 to {}", kMostThreads));
+  if (!(options.lease_s >= 0.1 && options.lease_s <= kLongestLease_s))
+    return wrong("--lease_s", options.lease_s, fmt::format("0.1 to {}", kLongestLease_s));
+  if (options.max_attempts < 1) return wrong("--max_attempts", options.max_attempts, "1 or more");
+  if (!(options.job_timeout_s >= 0) || !std::isfinite(options.job_timeout_s))
+    return wrong("--job_timeout_s", options.job_timeout_s, "0 (no limit) or more");
+  if (options.max_open_jobs < 1)
+    return wrong("--max_open_jobs", options.max_open_jobs, "1 or more");
+  if (options.max_body_bytes < 1024 || options.max_body_bytes > (64u << 20))
+    return wrong("--max_body_bytes", options.max_body_bytes, "1024 to 67108864");
+  if (options.max_connections < 1)
+    return wrong("--max_connections", options.max_connections, "1 or more");
+  if (options.max_watches < 1 || options.max_watches > 4096)
+    return wrong("--max_watches", options.max_watches, "1 to 4096");
+  if (std::ranges::find(kLogLevels, options.log_level) == kLogLevels.end())
+    return wrong("--log_level", options.log_level, "debug, info, warning or error");
+  const auto& url = options.public_url;
+  if (!url.empty() && !url.starts_with("http://") && !url.starts_with("https://"))
+    return wrong("--public_url", url, "a URL that starts with http:// or https://");
+  return {};
+}
+
+}  // namespace citymesh

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/result.h"
+
+namespace citymesh {
+
+/// Where a server listens. Port 0: any free one.
+struct Endpoint {
+  std::string host{};
+  std::uint16_t port = 0;
+};
+
+/// Reads `HOST:PORT`, `[IPV6]:PORT` or `PORT` (on 127.0.0.1). Errors: InvalidArgument.
+Result<Endpoint> parse_endpoint(std::string_view text);
+std::string to_string(const Endpoint& endpoint);  ///< as it stands in a URL
+bool is_loopback(const Endpoint& endpoint);
+
+/// All settings of `citymesh serve`.
+struct ServeOptions {
+  std::vector<std::filesystem::path> data{};       ///< files and folders that jobs read from
+  std::filesystem::path state = "citymesh-state";  ///< jobs and results
+  Endpoint listen{"127.0.0.1", 8080};              ///< REST
+  Endpoint grpc{"127.0.0.1", 50051};
+  std::string public_url{};  ///< base of all links; empty: from the request
+
+  unsigned workers = 1;            ///< jobs worked on at the same time
+  unsigned threads = 0;            ///< threads of all workers together; 0: one per core
+  double lease_s = 30;             ///< a worker not heard of for so long counts as dead
+  std::uint32_t max_attempts = 3;  ///< deaths of a worker after which its job is failed
+  double job_timeout_s = 0;        ///< a job that runs longer is failed; 0: no limit
+
+  std::uint32_t max_open_jobs = 1000;      ///< accepted and running; more are refused
+  std::uint64_t max_body_bytes = 1 << 20;  ///< of a request, REST and gRPC
+  std::uint32_t max_connections = 1024;    ///< REST
+  std::uint32_t max_watches = 256;         ///< gRPC streams open at the same time
+
+  std::string log_level = "info";  ///< debug, info, warning, error
+};
+
+/// Errors: InvalidArgument naming the first setting that cannot be used, its value and what is
+/// expected.
+Result<void> check(const ServeOptions& options);
+
+}  // namespace citymesh

@@ -1,0 +1,285 @@
+#include "services/rpc/server.h"
+
+#include <fmt/format.h>
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/grpcpp.h>
+#include <grpcpp/health_check_service_interface.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <utility>
+
+#include "citymesh/v1/jobs.grpc.pb.h"
+#include "services/jobs/job_manager.h"
+#include "services/telemetry/metrics.h"
+
+namespace citymesh {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint64_t kChunkBytes = 256 * 1024;
+constexpr TimeMs kWatchWaitMs = 200;  // how soon a client that has left is noticed
+constexpr int kThreadsForCalls = 32;  // beside those that watches hold
+
+grpc::StatusCode to_grpc(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::InvalidArgument:
+      return grpc::StatusCode::INVALID_ARGUMENT;
+    case ErrorCode::FailedPrecondition:
+      return grpc::StatusCode::FAILED_PRECONDITION;
+    case ErrorCode::NotFound:
+      return grpc::StatusCode::NOT_FOUND;
+    case ErrorCode::AlreadyExists:
+      return grpc::StatusCode::ALREADY_EXISTS;
+    case ErrorCode::PermissionDenied:
+      return grpc::StatusCode::PERMISSION_DENIED;
+    case ErrorCode::ResourceExhausted:
+      return grpc::StatusCode::RESOURCE_EXHAUSTED;
+    case ErrorCode::Cancelled:
+      return grpc::StatusCode::CANCELLED;
+    case ErrorCode::DeadlineExceeded:
+      return grpc::StatusCode::DEADLINE_EXCEEDED;
+    case ErrorCode::Unavailable:
+      return grpc::StatusCode::UNAVAILABLE;
+    case ErrorCode::Unimplemented:
+      return grpc::StatusCode::UNIMPLEMENTED;
+    case ErrorCode::DataLoss:
+      return grpc::StatusCode::DATA_LOSS;
+    case ErrorCode::Internal:
+      return grpc::StatusCode::INTERNAL;
+  }
+  return grpc::StatusCode::INTERNAL;
+}
+
+grpc::Status to_status(const Error& error) { return {to_grpc(error.code), error.message}; }
+
+v1::JobState to_proto(JobState state) {
+  switch (state) {
+    case JobState::Accepted:
+      return v1::ACCEPTED;
+    case JobState::Running:
+      return v1::RUNNING;
+    case JobState::Successful:
+      return v1::SUCCESSFUL;
+    case JobState::Failed:
+      return v1::FAILED;
+    case JobState::Dismissed:
+      return v1::DISMISSED;
+  }
+  return v1::JOB_STATE_UNSPECIFIED;
+}
+
+v1::Job to_proto(const Job& job) {
+  v1::Job message;
+  message.set_job_id(job.id);
+  message.set_process(job.spec.process);
+  message.set_state(to_proto(job.state));
+  message.set_message(job.message);
+  message.set_stage(job.progress.stage);
+  message.set_done(job.progress.done);
+  message.set_total(job.progress.total);
+  message.set_percent(job.percent);
+  message.set_created_ms(job.created);
+  message.set_started_ms(job.started.value_or(0));
+  message.set_finished_ms(job.finished.value_or(0));
+  message.set_updated_ms(job.updated);
+  for (const auto& file : job.results) {
+    auto& result = *message.add_results();
+    result.set_output(file.output);
+    result.set_file_name(file.file_name);
+    result.set_media_type(file.media_type);
+    result.set_bytes(file.bytes);
+  }
+  if (job.error) {
+    message.set_error_code(std::string(to_string(job.error->code)));
+    message.set_error_message(job.error->message);
+  }
+  return message;
+}
+
+JobSpec to_spec(const v1::SubmitRequest& request) {
+  JobSpec spec;
+  spec.process = request.process();
+  spec.inputs_json = request.inputs_json();
+  for (const auto& output : request.outputs()) spec.outputs[output] = Transmission::Value;
+  return spec;
+}
+
+/// Counts a call and its time when it ends.
+template <class Call>
+grpc::Status measured(Metrics& metrics, std::string_view method, const Call& call) {
+  const auto start = Clock::now();
+  auto status = [&]() -> grpc::Status {
+    try {
+      return call();
+    } catch (const std::exception& error) {
+      return {grpc::StatusCode::INTERNAL, error.what()};
+    }
+  }();
+  metrics.rpc_request(method, fmt::format("{}", static_cast<int>(status.error_code())),
+                      std::chrono::duration<double>(Clock::now() - start).count());
+  return status;
+}
+
+class JobsService final : public v1::Jobs::Service {
+ public:
+  JobsService(JobManager& jobs, Metrics& metrics, std::uint32_t max_watches)
+      : jobs_(jobs), metrics_(metrics), max_watches_(max_watches) {}
+
+  void stop() { stopping_ = true; }
+
+  grpc::Status Submit(grpc::ServerContext*, const v1::SubmitRequest* request,
+                      v1::Job* answer) override {
+    return measured(metrics_, "Submit",
+                    [&] { return reply(jobs_.submit(to_spec(*request)), answer); });
+  }
+
+  grpc::Status Get(grpc::ServerContext*, const v1::GetRequest* request, v1::Job* answer) override {
+    return measured(metrics_, "Get", [&] { return reply(jobs_.get(request->job_id()), answer); });
+  }
+
+  grpc::Status Dismiss(grpc::ServerContext*, const v1::GetRequest* request,
+                       v1::Job* answer) override {
+    return measured(metrics_, "Dismiss",
+                    [&] { return reply(jobs_.dismiss(request->job_id()), answer); });
+  }
+
+  grpc::Status Watch(grpc::ServerContext* context, const v1::GetRequest* request,
+                     grpc::ServerWriter<v1::Job>* writer) override {
+    return measured(metrics_, "Watch", [&] { return watch(*context, request->job_id(), *writer); });
+  }
+
+  grpc::Status FetchResult(grpc::ServerContext* context, const v1::FetchResultRequest* request,
+                           grpc::ServerWriter<v1::Chunk>* writer) override {
+    return measured(metrics_, "FetchResult", [&] { return fetch(*context, *request, *writer); });
+  }
+
+ private:
+  static grpc::Status reply(const Result<Job>& job, v1::Job* answer) {
+    if (!job) return to_status(job.error());
+    *answer = to_proto(*job);
+    return grpc::Status::OK;
+  }
+
+  grpc::Status watch(grpc::ServerContext& context, const std::string& id,
+                     grpc::ServerWriter<v1::Job>& writer) {
+    struct Slot {
+      explicit Slot(std::atomic<std::uint32_t>& count_in) : count(count_in), place(++count) {}
+      ~Slot() { --count; }
+      std::atomic<std::uint32_t>& count;
+      std::uint32_t place;
+    } const slot(watches_);
+    if (slot.place > max_watches_)
+      return {grpc::StatusCode::RESOURCE_EXHAUSTED,
+              fmt::format("{} watches are open and at most {} may be; use Get or try again later",
+                          max_watches_, max_watches_)};
+
+    auto job = jobs_.get(id);
+    if (!job) return to_status(job.error());
+    if (!writer.Write(to_proto(*job))) return grpc::Status::CANCELLED;
+    auto seen = job->updated;
+    while (!is_final(job->state)) {
+      if (context.IsCancelled()) return grpc::Status::CANCELLED;
+      if (stopping_) return {grpc::StatusCode::UNAVAILABLE, "the server is shutting down"};
+      job = jobs_.wait_for_change(id, seen, kWatchWaitMs);
+      if (!job) return to_status(job.error());
+      if (job->updated == seen) continue;
+      seen = job->updated;
+      if (!writer.Write(to_proto(*job))) return grpc::Status::CANCELLED;
+    }
+    return grpc::Status::OK;
+  }
+
+  grpc::Status fetch(grpc::ServerContext& context, const v1::FetchResultRequest& request,
+                     grpc::ServerWriter<v1::Chunk>& writer) {
+    const auto files = jobs_.results(request.job_id());
+    if (!files) return to_status(files.error());
+    const auto file = std::ranges::find_if(*files, [&](const ResultFile& candidate) {
+      return candidate.file_name == request.output() || candidate.output == request.output();
+    });
+    if (file == files->end()) {
+      std::string available;
+      for (const auto& candidate : *files)
+        available += (available.empty() ? "" : ", ") + candidate.file_name;
+      return {grpc::StatusCode::NOT_FOUND,
+              fmt::format("job {} has no result '{}'; available: {}", request.job_id(),
+                          request.output(), available)};
+    }
+    for (std::uint64_t offset = 0;;) {
+      if (context.IsCancelled()) return grpc::Status::CANCELLED;
+      if (stopping_) return {grpc::StatusCode::UNAVAILABLE, "the server is shutting down"};
+      auto bytes = jobs_.read_result(request.job_id(), file->file_name, offset, kChunkBytes);
+      if (!bytes) return to_status(bytes.error());
+      if (bytes->empty()) return grpc::Status::OK;
+      offset += bytes->size();
+      v1::Chunk chunk;
+      chunk.set_data(*std::move(bytes));
+      if (!writer.Write(chunk)) return grpc::Status::CANCELLED;
+    }
+  }
+
+  JobManager& jobs_;
+  Metrics& metrics_;
+  const std::uint32_t max_watches_;
+  std::atomic<std::uint32_t> watches_ = 0;
+  std::atomic<bool> stopping_ = false;
+};
+
+std::string address(const std::string& host, std::uint16_t port) {
+  const auto ipv6 = host.find(':') != std::string::npos;
+  return ipv6 ? fmt::format("[{}]:{}", host, port) : fmt::format("{}:{}", host, port);
+}
+
+}  // namespace
+
+struct RpcServer::Impl {
+  Impl(JobManager& jobs, Metrics& metrics, RpcOptions options_in)
+      : options(std::move(options_in)), service(jobs, metrics, options.max_watches) {}
+
+  RpcOptions options;
+  JobsService service;
+  std::unique_ptr<grpc::Server> server{};
+};
+
+RpcServer::RpcServer(JobManager& jobs, Metrics& metrics, RpcOptions options)
+    : impl_(std::make_unique<Impl>(jobs, metrics, std::move(options))) {}
+
+RpcServer::~RpcServer() { stop(); }
+
+Result<std::uint16_t> RpcServer::start() {
+  const auto& options = impl_->options;
+  grpc::EnableDefaultHealthCheckService(true);
+  grpc::reflection::InitProtoReflectionServerBuilderPlugin();
+
+  int port = 0;
+  grpc::ServerBuilder builder;
+  const auto where = address(options.host, options.port);
+  builder.AddListeningPort(where, grpc::InsecureServerCredentials(), &port);
+  builder.RegisterService(&impl_->service);
+  builder.SetMaxReceiveMessageSize(options.max_message_bytes);
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);  // a taken port is an error
+  grpc::ResourceQuota quota("citymesh");
+  quota.SetMaxThreads(static_cast<int>(options.max_watches) + kThreadsForCalls);
+  builder.SetResourceQuota(quota);
+  impl_->server = builder.BuildAndStart();
+  if (!impl_->server || port == 0) {
+    impl_->server.reset();
+    return fail(
+        ErrorCode::Unavailable,
+        fmt::format("cannot listen for gRPC on {}: address in use or not of this machine", where));
+  }
+  return static_cast<std::uint16_t>(port);
+}
+
+void RpcServer::stop() {
+  if (!impl_->server) return;
+  impl_->service.stop();
+  impl_->server->Shutdown(std::chrono::system_clock::now() + std::chrono::seconds(2));
+  impl_->server->Wait();
+  impl_->server.reset();
+}
+
+}  // namespace citymesh

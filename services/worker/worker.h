@@ -1,0 +1,46 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "core/base/result.h"
+#include "core/source/source.h"
+#include "services/jobs/stores.h"
+
+namespace citymesh {
+
+class Log;
+class Metrics;
+
+struct WorkerOptions {
+  unsigned workers = 1;               ///< jobs worked on at the same time
+  unsigned threads_per_job = 1;       ///< threads of one job's own work
+  TimeMs lease_ms = 30'000;           ///< a worker not heard of for so long counts as dead
+  TimeMs job_timeout_ms = 0;          ///< a job that runs longer is failed; 0: no limit
+  TimeMs progress_interval_ms = 200;  ///< least time between two stored progress reports
+};
+
+/// Opens what jobs read from; called once per job, on its worker thread.
+using SourceFactory = std::function<Result<std::unique_ptr<CitySource>>()>;
+
+/// Threads that claim jobs, run them and store their results. They keep nothing between jobs, and
+/// nothing that a job does ends its worker. The stores must outlive the pool.
+class WorkerPool {
+ public:
+  WorkerPool(JobStore& jobs, TaskQueue& queue, ResultStore& results, SourceFactory source, Log& log,
+             Metrics& metrics, WorkerOptions options = {});
+  ~WorkerPool();  ///< stops
+  WorkerPool(const WorkerPool&) = delete;
+  WorkerPool& operator=(const WorkerPool&) = delete;
+
+  void start();
+
+  /// Stops the running jobs and hands them back to the queue. Returns when all threads have ended.
+  void stop();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace citymesh
