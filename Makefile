@@ -35,8 +35,8 @@ acceptance: build install-test ## every file with a known building count, each d
 	@python3 scripts/acceptance.py --program build/release/services/apps/citymesh \
 	  --checker build/release/tests/support/mesh_checker/citymesh_mesh_checker
 
-bench: install-test build ## reading and meshing speed, growth and memory on 10 and 100 MB of tiled real data
-	@scripts/bench.sh build/release
+bench: build install-test ## reading and meshing speed, growth and memory on 10 and 100 MB of tiled real data
+	@python3 scripts/bench.py --build build/release
 
 fuzz: install-build install-check ## every parser under libFuzzer, SECONDS_EACH=60
 	@cmake --preset fuzz >build/.configure.log 2>&1 || { cat build/.configure.log >&2; exit 1; }

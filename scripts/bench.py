@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""The speed figures: reading against xmllint, buildings per second of the whole run on one core, growth from 10 to 100 MB, memory.
+
+Tiles real CityGML to the wanted sizes (kept in out/bench), pins every measured program to one core, takes the median of the runs
+and prints a Markdown table.
+"""
+import argparse
+import os
+import re
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def big_file(source, megabytes, folder):
+    path = folder / f"{Path(source).name.split('.')[0]}_{megabytes}.gml"
+    if not path.exists():
+        subprocess.run([sys.executable, ROOT / "scripts/make_big_city.py", source, str(megabytes), path.with_suffix(".part")], check=True)
+        path.with_suffix(".part").rename(path)
+    return path
+
+
+def measured(command, core):
+    """(seconds, peak MB, standard output) of a child pinned to one core."""
+    with tempfile.TemporaryFile() as output:
+        started = time.monotonic()
+        child = subprocess.Popen([str(word) for word in command], stdout=output, stdin=subprocess.DEVNULL,
+                                 preexec_fn=lambda: os.sched_setaffinity(0, {core}))
+        _, status, usage = os.wait4(child.pid, 0)
+        seconds = time.monotonic() - started
+        child.returncode = os.waitstatus_to_exitcode(status)
+        output.seek(0)
+        text = output.read().decode(errors="replace")
+    if child.returncode not in (0, 1):
+        raise SystemExit(f"exit code {child.returncode}: {' '.join(map(str, command))}")
+    return seconds, usage.ru_maxrss / 1024, text
+
+
+def median_of(runs, command, core):
+    results = [measured(command, core) for _ in range(runs)]
+    return statistics.median(r[0] for r in results), max(r[1] for r in results), results[0][2]
+
+
+def buildings_in(path):
+    count = 0
+    with open(path, "rb") as file:
+        for line in file:
+            count += len(re.findall(rb"<(?:\w+:)?Building[ >]", line))
+    return count
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=Path, default=ROOT / "build/release")
+    parser.add_argument("--source", default=ROOT / "tests/data/berlin/3910_5817.gml")
+    parser.add_argument("--sizes", default="10,100", help="megabytes")
+    parser.add_argument("--runs", type=int, default=5)
+    parser.add_argument("--core", type=int, default=sorted(os.sched_getaffinity(0))[-1])
+    parser.add_argument("--folder", type=Path, default=ROOT / "out/bench")
+    arguments = parser.parse_args()
+    arguments.folder.mkdir(parents=True, exist_ok=True)
+    program = arguments.build / "services/apps/citymesh"
+    reader = next(iter(arguments.build.glob("tests/bench/source/bench_source*")), None)
+
+    print(f"Median of {arguments.runs}, one core, {Path(arguments.source).name} tiled\n")
+    print("| file | buildings | xmllint | reading | reading / xmllint | whole run | buildings/s | peak memory |")
+    print("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |")
+    whole = []
+    for size in arguments.sizes.split(","):
+        path = big_file(arguments.source, size, arguments.folder)
+        buildings = buildings_in(path)
+        megabytes = path.stat().st_size / 1e6
+        lint_s, _, _ = median_of(arguments.runs, ["xmllint", "--stream", "--noout", "--huge", path], arguments.core)
+        reading = ratio = "-"
+        if reader and os.access(reader, os.X_OK):
+            # The program prints the seconds of its best-known measure itself: parse to city model, without start-up.
+            text = measured([reader, path, str(arguments.runs)], arguments.core)[2]
+            found = re.search(r"([0-9.]+) s\b", text)
+            if found:
+                reading, ratio = f"{float(found[1]):.2f} s", f"{float(found[1]) / lint_s:.2f}"
+        out = Path(tempfile.mkdtemp(prefix="citymesh-bench-"))
+        seconds, peaks = [], []
+        try:
+            for run in range(arguments.runs):
+                run_s, peak, _ = measured([program, "run", "export-for-simulation", "--input", path, "--output", out / str(run),
+                                           "--format", "obj"], arguments.core)
+                seconds.append(run_s)
+                peaks.append(peak)
+                shutil.rmtree(out / str(run))
+        finally:
+            shutil.rmtree(out)
+        run_s = statistics.median(seconds)
+        whole.append((megabytes, run_s))
+        print(f"| {path.name}, {megabytes:.0f} MB | {buildings} | {lint_s:.2f} s | {reading} | {ratio} | {run_s:.2f} s | "
+              f"{buildings / run_s:.0f} | {max(peaks):.0f} MB |", flush=True)
+    if len(whole) > 1:
+        (small, small_s), (large, large_s) = whole[0], whole[-1]
+        print(f"\n{large / small:.1f} times the input takes {large_s / small_s:.1f} times as long.")
+
+
+if __name__ == "__main__":
+    main()
