@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "services/jobs/job_manager.h"
+#include "services/rest/message.h"
+#include "services/telemetry/metrics.h"
+
+namespace citymesh {
+
+struct ApiOptions {
+  std::string public_url{};  ///< base of all links; empty: http:// and the request's Host
+  std::string cors_allow_origin = "*";
+  std::uint64_t max_inline_bytes = 16 << 20;
+};
+
+/// The resources of OGC API - Processes 1.0 as a function from request to response; it knows no
+/// socket. Thread-safe; may block on the stores.
+class Api {
+ public:
+  Api(JobManager& jobs, Metrics& metrics, ApiOptions options);
+
+  /// Always answers: what is wrong with a request becomes a problem document. A HEAD request gets
+  /// the answer of GET; its body is not to be sent.
+  Response handle(const Request& request) const;
+
+ private:
+  /// A request with what routing found out about it.
+  struct Call {
+    const Request& request;
+    std::string method;  ///< GET also for HEAD
+    Target target;
+    std::string base;                 ///< scheme, host and prefix of links, no slash at the end
+    std::vector<std::string> values;  ///< what the pattern's braces stand for
+    std::string accept;
+  };
+  struct Route {
+    std::string_view method;
+    std::string_view pattern;
+    Response (Api::*handler)(const Call& call) const;
+  };
+  static const Route kRoutes[];
+
+  Response dispatch(const Request& request, std::string_view& route) const;
+  Result<std::string> base_url(const Request& request) const;
+  void add_common_headers(const Request& request, Response& response) const;
+
+  Response landing(const Call& call) const;
+  Response conformance(const Call& call) const;
+  Response api_definition(const Call& call) const;
+  Response process_list(const Call& call) const;
+  Response process(const Call& call) const;
+  Response execute(const Call& call) const;
+  Response job_list(const Call& call) const;
+  Response job(const Call& call) const;
+  Response dismiss(const Call& call) const;
+  Response results(const Call& call) const;
+  Response result(const Call& call) const;
+  Response healthz(const Call& call) const;
+  Response readyz(const Call& call) const;
+  Response metrics(const Call& call) const;
+
+  Result<Job> find_job(const Call& call) const;
+  Response job_error(const Call& call, const Error& error) const;
+  Response not_successful(const Call& call, const Job& job) const;
+
+  JobManager& jobs_;
+  Metrics& metrics_;
+  ApiOptions options_;
+};
+
+}  // namespace citymesh

@@ -1,0 +1,296 @@
+#include "services/rest/openapi.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/version.h"
+#include "core/pipeline/pipeline.h"
+#include "services/rest/links.h"
+#include "services/rest/processes.h"
+
+namespace citymesh {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ref(std::string_view kind, std::string_view name) {
+  return {{"$ref", fmt::format("#/components/{}/{}", kind, name)}};
+}
+
+Json schema_ref(std::string_view name) { return ref("schemas", name); }
+
+Json content(std::string_view media_type, Json schema) {
+  return {{std::string(media_type), {{"schema", std::move(schema)}}}};
+}
+
+/// A success answer in JSON and, for browsers, as a page.
+Json json_or_page(std::string_view description, std::string_view schema) {
+  auto media = content("application/json", schema_ref(schema));
+  media["text/html"] = {{"schema", {{"type", "string"}}}};
+  return {{"description", description}, {"content", std::move(media)}};
+}
+
+Json operation(std::string_view id, std::string_view tag, std::string_view summary, Json parameters,
+               Json responses) {
+  Json described = {{"operationId", id}, {"tags", Json::array({tag})}, {"summary", summary}};
+  if (!parameters.empty()) described["parameters"] = std::move(parameters);
+  responses["default"] = ref("responses", "Problem");
+  described["responses"] = std::move(responses);
+  return described;
+}
+
+Json parameter(std::string_view name, std::string_view in, std::string_view description,
+               Json schema) {
+  return {{"name", name},
+          {"in", in},
+          {"required", in == "path"},
+          {"description", description},
+          {"schema", std::move(schema)}};
+}
+
+Json text() { return {{"type", "string"}}; }
+Json whole_number(int minimum) { return {{"type", "integer"}, {"minimum", minimum}}; }
+Json date_time() { return {{"type", "string"}, {"format", "date-time"}}; }
+Json list_of(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
+
+Json object(Json properties, std::initializer_list<const char*> required) {
+  Json schema = {{"type", "object"}};
+  if (required.size() > 0) schema["required"] = required;
+  schema["properties"] = std::move(properties);
+  return schema;
+}
+
+Json one_of(std::initializer_list<const char*> values) {
+  return {{"type", "string"}, {"enum", values}};
+}
+
+std::string execute_schema_name(const ProcessSpec& process) {
+  return fmt::format("execute-{}", process.id);
+}
+
+Json execute_schema(const ProcessSpec& process) {
+  Json outputs = Json::object();
+  for (const auto& output : process.outputs) outputs[std::string(output.id)] = schema_ref("output");
+  Json outputs_schema = object(std::move(outputs), {});
+  outputs_schema["additionalProperties"] = false;
+  auto schema = object({{"inputs", Json::parse(inputs_schema_json(process))},
+                        {"outputs", std::move(outputs_schema)},
+                        {"response", one_of({"raw", "document"})}},
+                       {});
+  schema["additionalProperties"] = false;
+  schema["example"] = Json::parse(example_request_json(process));
+  return schema;
+}
+
+Json schemas() {
+  Json all = {
+      {"link", object({{"href", text()},
+                       {"rel", text()},
+                       {"type", text()},
+                       {"title", text()},
+                       {"length", whole_number(0)}},
+                      {"href"})},
+      {"landingPage", object({{"title", text()},
+                              {"description", text()},
+                              {"version", text()},
+                              {"links", list_of(schema_ref("link"))}},
+                             {"links"})},
+      {"conformance", object({{"conformsTo", list_of(text())}}, {"conformsTo"})},
+      {"processSummary", object({{"id", text()},
+                                 {"version", text()},
+                                 {"title", text()},
+                                 {"description", text()},
+                                 {"jobControlOptions", list_of(text())},
+                                 {"outputTransmission", list_of(one_of({"value", "reference"}))},
+                                 {"links", list_of(schema_ref("link"))}},
+                                {"id", "version"})},
+      {"processList", object({{"processes", list_of(schema_ref("processSummary"))},
+                              {"links", list_of(schema_ref("link"))}},
+                             {"processes", "links"})},
+      {"process",
+       {{"allOf",
+         Json::array({schema_ref("processSummary"),
+                      object({{"inputs", {{"type", "object"}}}, {"outputs", {{"type", "object"}}}},
+                             {})})}}},
+      {"output", object({{"transmissionMode", one_of({"value", "reference"})},
+                         {"format", object({{"mediaType", text()}}, {})}},
+                        {})},
+      {"statusInfo",
+       object({{"processID", text()},
+               {"type", one_of({"process"})},
+               {"jobID", text()},
+               {"status", one_of({"accepted", "running", "successful", "failed", "dismissed"})},
+               {"message", text()},
+               {"created", date_time()},
+               {"started", date_time()},
+               {"finished", date_time()},
+               {"updated", date_time()},
+               {"progress", {{"type", "integer"}, {"minimum", 0}, {"maximum", 100}}},
+               {"stage", text()},
+               {"done", whole_number(0)},
+               {"total", whole_number(0)},
+               {"exception", schema_ref("problem")},
+               {"links", list_of(schema_ref("link"))}},
+              {"jobID", "status", "type"})},
+      {"jobList",
+       object({{"jobs", list_of(schema_ref("statusInfo"))}, {"links", list_of(schema_ref("link"))}},
+              {"jobs", "links"})},
+      {"results",
+       {{"type", "object"},
+        {"description", "Output id to value, qualified value or link."},
+        {"additionalProperties", true}}},
+      {"problem", object({{"type", text()},
+                          {"title", text()},
+                          {"status", {{"type", "integer"}}},
+                          {"detail", text()},
+                          {"instance", text()}},
+                         {"type"})}};
+  for (const auto& process : processes())
+    all[execute_schema_name(process)] = execute_schema(process);
+  return all;
+}
+
+Json execution_path(const ProcessSpec& process) {
+  auto prefer =
+      parameter("Prefer", "header", "`respond-async` is honoured; jobs always are.", text());
+  auto created = json_or_page("The job is accepted; `Location` is its address.", "statusInfo");
+  created["content"].erase("text/html");
+  created["headers"]["Location"] = {{"description", "Absolute URL of the job"},
+                                    {"schema", {{"type", "string"}, {"format", "uri"}}}};
+  auto post = operation(fmt::format("execute-{}", process.id), "Processes",
+                        fmt::format("Execute {} as a job", process.id),
+                        Json::array({std::move(prefer)}), {{"201", std::move(created)}});
+  post["requestBody"] = {
+      {"required", true},
+      {"content", content("application/json", schema_ref(execute_schema_name(process)))}};
+  return {{"post", std::move(post)}};
+}
+
+Json paths() {
+  const auto f = ref("parameters", "f");
+  const auto limit = ref("parameters", "limit");
+  const auto offset = ref("parameters", "offset");
+  const auto process_id = ref("parameters", "processID");
+  const auto job_id = ref("parameters", "jobID");
+  const auto get = [](Json described) { return Json{{"get", std::move(described)}}; };
+  const auto plain = [](std::string_view description) {
+    return Json{
+        {"200", {{"description", description}, {"content", content("text/plain", text())}}}};
+  };
+
+  Json api_answer = {{"description", "This description"},
+                     {"content", content(kOpenApiMediaType, {{"type", "object"}})}};
+  api_answer["content"]["text/html"] = {{"schema", text()}};
+
+  Json all = Json::object();
+  all["/"] = get(operation("landing", "Service", "Landing page", Json::array({f}),
+                           {{"200", json_or_page("Where everything is", "landingPage")}}));
+  all["/api"] = get(operation("api", "Service", "This API definition", Json::array({f}),
+                              {{"200", std::move(api_answer)}}));
+  all["/conformance"] =
+      get(operation("conformance", "Service", "Conformance classes", Json::array({f}),
+                    {{"200", json_or_page("Conformance classes", "conformance")}}));
+  all["/processes"] =
+      get(operation("processes", "Processes", "List of processes", Json::array({limit, offset, f}),
+                    {{"200", json_or_page("Processes", "processList")}}));
+  all["/processes/{processID}"] = get(operation(
+      "process", "Processes", "Inputs and outputs of a process", Json::array({process_id, f}),
+      {{"200", json_or_page("Process description", "process")}}));
+  for (const auto& process : processes())
+    all[fmt::format("/processes/{}/execution", process.id)] = execution_path(process);
+
+  all["/jobs"] = get(operation(
+      "jobs", "Jobs", "List of jobs, newest first",
+      Json::array(
+          {limit, offset,
+           parameter("type", "query", "Only jobs of processes exist", list_of(one_of({"process"}))),
+           parameter("processID", "query", "Jobs of these processes", list_of(text())),
+           parameter("status", "query", "Jobs in these states",
+                     list_of(one_of({"accepted", "running", "successful", "failed", "dismissed"}))),
+           parameter("datetime", "query", "Created at an instant or in an interval `from/to`",
+                     text()),
+           parameter("minDuration", "query", "Seconds of running, at least", whole_number(0)),
+           parameter("maxDuration", "query", "Seconds of running, at most", whole_number(0)), f}),
+      {{"200", json_or_page("Jobs", "jobList")}}));
+  for (const auto* name : {"type", "processID", "status"})
+    for (auto& described : all["/jobs"]["get"]["parameters"])
+      if (described.value("name", "") == name) {
+        described["style"] = "form";
+        described["explode"] = false;
+      }
+
+  Json job = get(operation("job", "Jobs", "Status of a job", Json::array({job_id, f}),
+                           {{"200", json_or_page("Status", "statusInfo")}}));
+  job["delete"] =
+      operation("dismiss", "Jobs", "Dismiss a job", Json::array({job_id}),
+                {{"200",
+                  {{"description", "The dismissed job"},
+                   {"content", content("application/json", schema_ref("statusInfo"))}}}});
+  all["/jobs/{jobID}"] = std::move(job);
+
+  Json results = content("application/json", schema_ref("results"));
+  results["multipart/related"] = {{"schema", text()}};
+  results["*/*"] = {{"schema", {{"type", "string"}, {"format", "binary"}}}};
+  all["/jobs/{jobID}/results"] =
+      get(operation("results", "Jobs", "Results of a job, in the form its request asked for",
+                    Json::array({job_id, f}),
+                    {{"200",
+                      {{"description", "A document of values and links, or raw values"},
+                       {"content", std::move(results)}}},
+                     {"204", {{"description", "Raw results by reference, in `Link` headers"}}}}));
+  all["/jobs/{jobID}/results/{output}"] = get(operation(
+      "result", "Jobs", "One result file",
+      Json::array(
+          {job_id, parameter("output", "path", "An output (`obj`) or a result file (`picture.svg`)",
+                             text())}),
+      {{"200",
+        {{"description", "The file"},
+         {"content", content("*/*", {{"type", "string"}, {"format", "binary"}})}}}}));
+
+  all["/healthz"] = get(operation("healthz", "Operations", "Whether the server runs", Json::array(),
+                                  plain("It does")));
+  all["/readyz"] = get(operation("readyz", "Operations", "Whether jobs can be taken", Json::array(),
+                                 plain("They can")));
+  all["/metrics"] = get(operation("metrics", "Operations", "Metrics in Prometheus's text format",
+                                  Json::array(), plain("Metrics")));
+  return all;
+}
+
+}  // namespace
+
+std::string openapi_json(std::string_view server_url) {
+  Json problem = {{"description", "What is wrong"},
+                  {"content", content("application/problem+json", schema_ref("problem"))}};
+  problem["content"]["application/json"] = {{"schema", schema_ref("problem")}};
+  problem["content"]["text/html"] = {{"schema", text()}};
+
+  const Json document = {
+      {"openapi", "3.0.3"},
+      {"info",
+       {{"title", "citymesh"},
+        {"version", version()},
+        {"description",
+         "3D city models in, closed, 2-manifold, simulation-ready meshes out: OGC API - Processes "
+         "1.0."},
+        {"license",
+         {{"name", "GPL-3.0-or-later"}, {"url", "https://www.gnu.org/licenses/gpl-3.0.html"}}}}},
+      {"servers", Json::array({Json{{"url", server_url}}})},
+      {"tags", Json::array({Json{{"name", "Service"}, {"description", "What is here"}},
+                            Json{{"name", "Processes"}, {"description", "What can be done"}},
+                            Json{{"name", "Jobs"}, {"description", "What is being done"}},
+                            Json{{"name", "Operations"}, {"description", "For operators"}}})},
+      {"paths", paths()},
+      {"components",
+       {{"schemas", schemas()},
+        {"responses", {{"Problem", std::move(problem)}}},
+        {"parameters",
+         {{"f", parameter("f", "query", "Overrides the Accept header", one_of({"json", "html"}))},
+          {"limit", parameter("limit", "query", "Largest number of entries", whole_number(1))},
+          {"offset", parameter("offset", "query", "Entries to skip", whole_number(0))},
+          {"processID", parameter("processID", "path", "Id of a process", text())},
+          {"jobID", parameter("jobID", "path", "Id of a job", text())}}}}}};
+  return dump(document);
+}
+
+}  // namespace citymesh

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string_view>
+
+#include "services/jobs/job_manager.h"
+#include "services/rest/message.h"
+
+namespace citymesh {
+
+/// The answer to GET /jobs/{id}/results for a successful job, in the form its request asked for:
+/// a document of values and links, the one value itself, 204 with Link headers, or
+/// multipart/related. A raw answer of several outputs becomes a document of links for a client that
+/// accepts JSON only.
+Response results_response(JobManager& jobs, const Job& job, std::string_view base,
+                          std::string_view accept, std::uint64_t max_inline_bytes);
+
+/// The file that `name` stands for: a file name, or an output whose main file it is. nullptr: none.
+const ResultFile* find_result(const Job& job, std::string_view name);
+
+/// One result file, streamed.
+Response file_response(JobManager& jobs, const Job& job, const ResultFile& file);
+
+}  // namespace citymesh
