@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 
+#include "core/citymodel/choose.h"
 #include "core/citymodel/edges.h"
 #include "core/citymodel/grid.h"
 #include "core/geometry/box_tree.h"
 #include "core/geometry/triangulation.h"
 #include "core/heal/steps.h"
+#include "core/validate/validate.h"
 
 namespace citymesh {
 namespace {
@@ -100,31 +102,6 @@ std::string lane_of(const Shell& shell) {
   return "2.5d";
 }
 
-bool matches(Lod have, Lod wanted) {
-  return have.major == wanted.major && (wanted.minor < 0 || have.minor == wanted.minor);
-}
-
-/// Geometries of the first level that the building has, solids before stated surfaces before
-/// assembled ones, the finest minor level first.
-std::vector<const Geometry*> choose(const Building& building, std::span<const Lod> lod) {
-  for (const Lod& wanted : lod) {
-    std::vector<const Geometry*> found;
-    for (const Geometry& geometry : building.geometries)
-      if (matches(geometry.lod, wanted) && !geometry.polygons.empty()) found.push_back(&geometry);
-    if (found.empty()) continue;
-    const auto rank = [](const Geometry* g) {
-      return g->footprint ? 3 : !g->solids.empty() ? 0 : g->assembled ? 1 : 2;
-    };
-    std::stable_sort(found.begin(), found.end(), [&](const Geometry* a, const Geometry* b) {
-      if (a->lod.minor != b->lod.minor) return a->lod.minor > b->lod.minor;
-      return rank(a) < rank(b);
-    });
-    std::erase_if(found, [&](const Geometry* g) { return g->lod != found[0]->lod; });
-    return found;
-  }
-  return {};
-}
-
 class Ladder {
  public:
   Ladder(const Building& building, const HealOptions& options, const DeliveryGate& gate,
@@ -132,7 +109,7 @@ class Ladder {
       : building_(building), options_(options), gate_(gate), context_(context) {}
 
   Healed climb(std::span<const Lod> lod) {
-    const auto geometries = choose(building_, lod);
+    const auto geometries = choose_geometries(building_, lod);
     if (geometries.empty()) {
       result_.reason = "no_geometry";
       return std::move(result_);
@@ -148,6 +125,7 @@ class Ladder {
       Gridded& input = std::get<Gridded>(gridded);
       if (!first) {
         first = input;
+        result_.issues = validate(input.shell, {options_.planarity_tolerance_m});
         if (is_closed(input.shell))
           result_.volume_before_m3 =
               volume_m3(input.shell.points, triangles_of(input.shell).triangles);
@@ -167,9 +145,12 @@ class Ladder {
   bool try_as_is(const Gridded& input) {
     Shell shell = input.shell;
     type_faces(shell);
-    std::vector<Issue> issues = gate_(shell);
-    if (result_.issues.empty()) result_.issues = issues;
-    if (!issues.empty()) return false;
+    const std::vector<Issue> refused = gate_(shell);
+    for (const Issue& issue : refused)
+      if (std::none_of(result_.issues.begin(), result_.issues.end(),
+                       [&](const Issue& known) { return known.code == issue.code; }))
+        result_.issues.push_back(issue);
+    if (!refused.empty()) return false;
     result_.max_displacement_m = input.max_displacement_m;
     return deliver("as_is", std::move(shell));
   }

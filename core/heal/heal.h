@@ -28,12 +28,13 @@ using DeliveryGate = std::function<std::vector<Issue>(const Shell&)>;
 
 /// The end of one building or part on the ladder.
 struct Healed {
-  std::string rung{};           ///< as_is, healed, lod1_block; empty when dropped
-  std::string reason{};         ///< when dropped: no_geometry, no_height, not_healed
-  std::string lane{};           ///< 2.5d: no two roof surfaces above each other; else 3d
-  Lod lod{};                    ///< of the geometry taken
-  Shell shell{};                ///< passed the gate; surfaces typed, oriented outwards
-  std::vector<Issue> issues{};  ///< what kept the geometry from going out as it was
+  std::string rung{};    ///< as_is, healed, lod1_block; empty when dropped
+  std::string reason{};  ///< when dropped: no_geometry, no_height, not_healed
+  std::string lane{};    ///< 2.5d: no two roof surfaces above each other; else 3d
+  Lod lod{};             ///< of the geometry taken
+  Shell shell{};         ///< passed the gate; surfaces typed, oriented outwards
+  std::vector<Issue>
+      issues{};  ///< defects of the first geometry tried, and what the gate held against it
   std::vector<Repair> repairs{};
   double max_displacement_m = 0;
   Deviation deviation{};  ///< two-sided distance to the input, except to faces that close holes

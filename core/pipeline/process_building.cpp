@@ -1,0 +1,305 @@
+#include "core/pipeline/process_building.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "core/citymodel/choose.h"
+#include "core/citymodel/grid.h"
+#include "core/gates/gates.h"
+#include "core/geometry/measure.h"
+#include "core/heal/heal.h"
+#include "core/mesh/mesh.h"
+#include "core/pipeline/signature.h"
+#include "core/validate/validate.h"
+
+namespace citymesh {
+namespace {
+
+constexpr std::array<std::string_view, 3> kRungs{"as_is", "healed", "lod1_block"};  // best first
+
+std::size_t rung_rank(std::string_view rung) {
+  return static_cast<std::size_t>(std::find(kRungs.begin(), kRungs.end(), rung) - kRungs.begin());
+}
+
+/// The issue that a failed gate is to a reader of the report.
+Issue issue_of(const GateFailure& failure, std::string_view format) {
+  struct Row {
+    std::string_view gate;
+    int code;
+  };
+  constexpr std::array kRows{Row{"G1", 302},
+                             Row{"G2", 303},
+                             Row{"G3", issue_code::kEulerFormula},
+                             Row{"G4", 306},
+                             Row{"G5", issue_code::kDegenerateTriangle},
+                             Row{"G6", issue_code::kTJunction},
+                             Row{"G7", 307},
+                             Row{"G8", issue_code::kDuplicateFace},
+                             Row{"G13", issue_code::kCoordinateOutOfRange}};
+  const auto row = std::find_if(kRows.begin(), kRows.end(),
+                                [&](const Row& r) { return r.gate == failure.gate; });
+  const int code = row == kRows.end() ? issue_code::kEncodingLoss : row->code;
+  return {code, fmt::format("{} {} ({})", failure.gate, failure.where, format),
+          static_cast<double>(failure.count)};
+}
+
+/// All that a reader of `text` finds, as one set of triangles.
+Result<WeldedBody> read_back(std::string_view format, std::string_view text) {
+  ParsedBody all;
+  auto parsed = parse_text(format, text, [&](ParsedBody&& body) -> Result<void> {
+    const auto first = static_cast<std::uint32_t>(all.points.size());
+    all.points.insert(all.points.end(), body.points.begin(), body.points.end());
+    for (const Triangle& t : body.triangles)
+      all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    return {};
+  });
+  if (!parsed) return parsed.error();
+  return weld(all);
+}
+
+/// Judges shells as the files would hold them, and keeps the mesh of the shell it judged last.
+class RoundTripGate {
+ public:
+  explicit RoundTripGate(const std::vector<OpenFormat>& formats) : formats_(formats) {}
+
+  std::vector<Issue> operator()(const Shell& shell) {
+    Meshed meshed = mesh(shell);
+    if (const Issue* issue = std::get_if<Issue>(&meshed)) return {*issue};
+    mesh_ = std::get<TriangleMesh>(std::move(meshed));
+    const std::uint64_t meant = signature(mesh_.points, mesh_.triangles);
+
+    std::vector<Issue> issues;
+    const auto judge = [&](const WeldedBody& body, std::string_view where) {
+      for (const GateFailure& failure : check_shell(body.points, body.triangles, {}))
+        issues.push_back(issue_of(failure, where));
+    };
+    BuildingBodies building;
+    building.bodies.push_back({});
+    building.bodies[0].name = "body";
+    building.bodies[0].mesh = std::move(mesh_);
+    bool judged = false;
+    for (const OpenFormat& open : formats_) {
+      auto text = open.writer->encode(building);
+      auto body = text ? read_back(open.format->key, *text) : Result<WeldedBody>(text.error());
+      if (!body) {
+        issues.push_back({issue_code::kEncodingLoss, body.error().message, 0});
+        continue;
+      }
+      if (signature(body->points, body->triangles) != meant) {
+        issues.push_back(
+            {issue_code::kEncodingLoss,
+             fmt::format("{} holds {} triangles that differ from the {} meant", open.format->key,
+                         body->triangles.size(), building.bodies[0].mesh.triangles.size()),
+             0});
+        continue;
+      }
+      // The same triangles need the same verdict only once.
+      if (!std::exchange(judged, true)) judge(*body, open.format->key);
+    }
+    mesh_ = std::move(building.bodies[0].mesh);
+    return issues;
+  }
+
+  TriangleMesh take_mesh() { return std::move(mesh_); }
+
+ private:
+  const std::vector<OpenFormat>& formats_;
+  TriangleMesh mesh_;
+};
+
+struct ProcessedPart {
+  PartReport report{};
+  std::optional<Body> body{};
+};
+
+ProcessedPart process_part(const Building& building, const std::string& name, const Inputs& inputs,
+                           const std::vector<OpenFormat>& formats, const RunContext& context) {
+  RoundTripGate gate(formats);
+  const HealOptions options{inputs.snap_tolerance_m, inputs.planarity_tolerance_m,
+                            inputs.max_displacement_m, inputs.block_on_failure};
+  Healed healed = heal(building, inputs.lod, options, std::ref(gate), context);
+
+  ProcessedPart processed;
+  PartReport& report = processed.report;
+  report.gml_id = building.gml_id;
+  report.name = name;
+  report.outcome = healed.rung.empty() ? "dropped" : "delivered";
+  report.reason = std::move(healed.reason);
+  report.lod = healed.rung.empty() && healed.issues.empty() ? "" : to_string(healed.lod);
+  report.lane = std::move(healed.lane);
+  report.rung = healed.rung;
+  report.issues_before = building.source_issues;
+  report.issues_before.insert(report.issues_before.end(), healed.issues.begin(),
+                              healed.issues.end());
+  if (healed.rung.empty()) {
+    report.issues_after = report.issues_before;
+    return processed;
+  }
+  report.reason.clear();
+  report.repairs = std::move(healed.repairs);
+  report.max_displacement_m = healed.max_displacement_m;
+  report.deviation_max_m = healed.deviation.max_m;
+  report.deviation_mean_m = healed.deviation.mean_m;
+  report.volume_before_m3 = healed.volume_before_m3;
+
+  Body body;
+  body.name = name;
+  body.gml_id = building.gml_id;
+  body.is_part = !building.parent.empty();
+  body.lod = report.lod;
+  body.attributes = building.attributes;
+  body.mesh = gate.take_mesh();
+  report.volume_after_m3 = volume_m3(body.mesh.points, body.mesh.triangles);
+  report.triangles = body.mesh.triangles.size();
+  processed.body = std::move(body);
+  return processed;
+}
+
+/// A building is as its parts are: the worst rung, the sums and the maxima.
+void add_up(BuildingReport& report, const PartReport& part) {
+  if (report.rung.empty() || rung_rank(part.rung) > rung_rank(report.rung)) report.rung = part.rung;
+  if (report.lane.empty() || part.lane == "3d") report.lane = part.lane;
+  if (report.lod.empty()) report.lod = part.lod;
+  report.max_displacement_m = std::max(report.max_displacement_m, part.max_displacement_m);
+  report.deviation_max_m = std::max(report.deviation_max_m, part.deviation_max_m);
+  report.deviation_mean_m = std::max(report.deviation_mean_m, part.deviation_mean_m);
+  report.volume_after_m3 += part.volume_after_m3;
+  report.triangles += part.triangles;
+}
+
+}  // namespace
+
+ProcessedBuilding process_building(const NamedBuilding& named, const Inputs& inputs,
+                                   const std::vector<OpenFormat>& formats,
+                                   const RunContext& context) {
+  const Building& building = named.building;
+  ProcessedBuilding processed;
+  BuildingReport& report = processed.report;
+  report.gml_id = building.gml_id;
+  report.name = named.name;
+
+  std::vector<Body> bodies;
+  const auto drop = [&](const std::string& reason) {
+    report.outcome = "dropped";
+    report.reason = reason;
+    report.rung.clear();
+    report.volume_after_m3 = 0;
+    report.triangles = 0;
+    for (PartReport& part : report.parts) {
+      if (part.outcome == "dropped") continue;
+      part.outcome = "dropped";
+      part.reason = "building_dropped";
+      part.rung.clear();
+    }
+  };
+  if (named.duplicate) {
+    for (std::size_t i = 0; i < building.parts.size(); ++i) {
+      report.parts.push_back({});
+      report.parts.back().gml_id = building.parts[i].gml_id;
+      report.parts.back().name = named.part_names[i];
+    }
+    drop("duplicate_id");
+    return processed;
+  }
+
+  std::string first_reason;
+  bool any_geometry = false;
+  if (takes_own_geometry(building, inputs.lod)) {
+    ProcessedPart own = process_part(building, named.name, inputs, formats, context);
+    const bool silent = own.report.reason == "no_geometry" && !building.parts.empty();
+    static_cast<PartReport&>(report) = own.report;
+    if (own.body) {
+      bodies.push_back(std::move(*own.body));
+      any_geometry = true;
+    } else if (!silent) {
+      first_reason = own.report.reason;
+    }
+  } else {
+    report.issues_before = building.source_issues;
+  }
+  report.outcome = "delivered";
+  for (std::size_t i = 0; i < building.parts.size(); ++i) {
+    ProcessedPart part =
+        process_part(building.parts[i], named.part_names[i], inputs, formats, context);
+    if (part.body) {
+      add_up(report, part.report);
+      bodies.push_back(std::move(*part.body));
+      any_geometry = true;
+    } else if (first_reason.empty()) {
+      first_reason = part.report.reason;
+    }
+    report.parts.push_back(std::move(part.report));
+  }
+  if (!first_reason.empty() || !any_geometry) {
+    drop(first_reason.empty() ? "no_geometry" : first_reason);
+    return processed;
+  }
+  report.reason.clear();
+  processed.bodies =
+      BuildingBodies{building.gml_id, report.rung, building.attributes, std::move(bodies)};
+  return processed;
+}
+
+BuildingReport validate_building(const NamedBuilding& named, const Inputs& inputs) {
+  const auto check = [&](const Building& building, const std::string& name) {
+    PartReport report;
+    report.gml_id = building.gml_id;
+    report.name = name;
+    report.outcome = "delivered";
+    report.issues_before = building.source_issues;
+    const std::vector<const Geometry*> geometries = choose_geometries(building, inputs.lod);
+    if (geometries.empty()) {
+      report.outcome = "dropped";
+      report.reason = "no_geometry";
+      return report;
+    }
+    report.lod = to_string(geometries[0]->lod);
+    const auto gridded = grid(building, *geometries[0]);
+    if (const Issue* issue = std::get_if<Issue>(&gridded)) {
+      report.issues_before.push_back(*issue);
+      return report;
+    }
+    const Shell& shell = std::get<Gridded>(gridded).shell;
+    std::vector<Issue> issues = validate(shell, {inputs.planarity_tolerance_m});
+    if (geometries[0]->footprint)  // an area has no shell to check
+      std::erase_if(issues,
+                    [](const Issue& issue) { return issue.code >= 300 && issue.code < 400; });
+    else if (const Meshed meshed = mesh(shell);
+             const auto* triangles = std::get_if<TriangleMesh>(&meshed)) {
+      report.triangles = triangles->triangles.size();
+      for (const GateFailure& failure : check_shell(triangles->points, triangles->triangles, {}))
+        if (const Issue issue = issue_of(failure, "gridded"); std::none_of(
+                issues.begin(), issues.end(), [&](const Issue& i) { return i.code == issue.code; }))
+          issues.push_back(issue);
+    }
+    report.issues_before.insert(report.issues_before.end(), issues.begin(), issues.end());
+    return report;
+  };
+
+  const Building& building = named.building;
+  BuildingReport report;
+  if (takes_own_geometry(building, inputs.lod)) {
+    static_cast<PartReport&>(report) = check(building, named.name);
+    if (report.reason == "no_geometry" && !building.parts.empty()) {
+      report.outcome = "delivered";
+      report.reason.clear();
+    }
+  } else {
+    report.gml_id = building.gml_id;
+    report.name = named.name;
+    report.outcome = "delivered";
+    report.issues_before = building.source_issues;
+  }
+  for (std::size_t i = 0; i < building.parts.size(); ++i)
+    report.parts.push_back(check(building.parts[i], named.part_names[i]));
+  if (named.duplicate) {
+    report.outcome = "dropped";
+    report.reason = "duplicate_id";
+  }
+  return report;
+}
+
+}  // namespace citymesh

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/run_context.h"
+#include "core/citymodel/building.h"
+#include "core/citymodel/mesh.h"
+#include "core/citymodel/report.h"
+#include "core/pipeline/inputs.h"
+#include "core/write/write.h"
+
+namespace citymesh {
+
+/// A requested format and its open file.
+struct OpenFormat {
+  const Format* format = nullptr;
+  std::unique_ptr<BodyWriter> writer{};
+};
+
+/// A building as it was read, with the names its bodies will have.
+struct NamedBuilding {
+  Building building{};
+  std::string name{};
+  std::vector<std::string> part_names{};
+  bool duplicate = false;  ///< its id was seen before
+};
+
+struct ProcessedBuilding {
+  BuildingReport report{};
+  std::optional<BuildingBodies> bodies{};  ///< none when dropped
+};
+
+/// Heals one building with its parts; every body passes the gates on its write-and-parse round trip
+/// in every open format. Touches nothing but its arguments: buildings run side by side.
+ProcessedBuilding process_building(const NamedBuilding& named, const Inputs& inputs,
+                                   const std::vector<OpenFormat>& formats,
+                                   const RunContext& context);
+
+/// Finds the defects of one building and changes nothing.
+BuildingReport validate_building(const NamedBuilding& named, const Inputs& inputs);
+
+}  // namespace citymesh
