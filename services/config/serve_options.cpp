@@ -6,7 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <thread>
+#include <system_error>
 
 namespace citymesh {
 namespace {
@@ -58,15 +58,14 @@ bool is_loopback(const Endpoint& endpoint) {
 
 Result<void> check(const ServeOptions& options) {
   if (options.data.empty())
-    return fail(ErrorCode::InvalidArgument, "no data given; expected --data with a file or folder");
-  for (const auto& path : options.data) {
-    std::error_code error;
-    if (!std::filesystem::exists(path, error))
-      return fail(ErrorCode::NotFound,
-                  fmt::format("--data '{}' does not exist; expected a file or folder of CityGML or "
-                              "CityJSON",
-                              path.string()));
-  }
+    return fail(ErrorCode::InvalidArgument,
+                "--data is missing; expected a folder of CityGML or CityJSON files");
+  std::error_code error;
+  if (!std::filesystem::exists(options.data, error))
+    return fail(ErrorCode::NotFound,
+                fmt::format("--data '{}' does not exist; expected a folder of CityGML or CityJSON "
+                            "files",
+                            options.data.string()));
   if (options.workers < 1 || options.workers > kMostThreads)
     return wrong("--workers", options.workers, fmt::format("1 to {}", kMostThreads));
   if (options.threads > kMostThreads)

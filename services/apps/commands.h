@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "services/apps/arguments.h"
+#include "services/config/serve_options.h"
+
+namespace citymesh {
+
+/// Exit codes of the program.
+inline constexpr int kDone = 0;
+inline constexpr int kDoneWithLosses = 1;  ///< objects dropped, inputs not read, or defects found
+inline constexpr int kCouldNotRun = 2;
+
+struct RunArguments {
+  std::string process{};
+  std::vector<std::filesystem::path> files{};
+  std::filesystem::path output{};  ///< empty (for `validate`): the report goes to stdout
+  bool overwrite = false;
+  unsigned threads = 0;  ///< 0: one per core
+  InputArguments inputs{};
+};
+
+/// Says on stderr what went wrong and returns kCouldNotRun.
+int could_not_run(const Error& error);
+
+int run_command(const RunArguments& arguments);
+int serve_command(const ServeOptions& options);
+int processes_command();
+
+}  // namespace citymesh

@@ -1,0 +1,158 @@
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+#include <string>
+
+#include "core/base/version.h"
+#include "core/pipeline/pipeline.h"
+#include "core/write/write.h"
+#include "services/apps/commands.h"
+
+namespace citymesh {
+namespace {
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 done; 1 done, but objects were dropped, inputs could not be read or (validate) "
+    "defects were found; 2 could not run, the reason is on stderr.";
+
+void add_selection(CLI::App& command, RunArguments& arguments) {
+  command
+      .add_option("--bbox", arguments.inputs.bbox,
+                  "only buildings that meet this box: minx,miny[,minz],maxx,maxy[,maxz][@CRS]; "
+                  "CRS84 when no CRS is named, else the axis order of the CRS")
+      ->type_name("BOX");
+  command
+      .add_option("--set", arguments.inputs.settings,
+                  "an input of the process, name=value; `citymesh processes` lists them")
+      ->type_name("NAME=VALUE");
+  command.add_option("--threads", arguments.threads, "threads to use; 0: one per core")
+      ->check(CLI::Range(0u, 256u));
+  command.add_flag("--overwrite", arguments.overwrite,
+                   "replace the results of an earlier run in the output folder");
+  command.footer(kExitCodes);
+}
+
+void add_run(CLI::App& program, RunArguments& arguments, int& code) {
+  auto& command = *program.add_subcommand("run", "runs a process on files, without a service");
+  command.add_option("process", arguments.process, "one of: " + process_ids())
+      ->required()
+      ->type_name("PROCESS");
+  command
+      .add_option("--input", arguments.files,
+                  "CityGML or CityJSON files (also .gz), or folders of them")
+      ->required()
+      ->type_name("FILE");
+  command.add_option("--output", arguments.output, "folder for the results; created if needed")
+      ->required()
+      ->type_name("DIR");
+  command
+      .add_option("--format", arguments.inputs.formats,
+                  "formats to write, by comma; available: " + format_keys())
+      ->delimiter(',')
+      ->type_name("FORMAT");
+  add_selection(command, arguments);
+  command.callback([&] { code = run_command(arguments); });
+}
+
+void add_validate(CLI::App& program, RunArguments& arguments, int& code) {
+  auto& command = *program.add_subcommand("validate", "finds the defects of buildings in files");
+  command.add_option("file", arguments.files, "CityGML or CityJSON files (also .gz), or folders")
+      ->required()
+      ->type_name("FILE");
+  command
+      .add_option("--output", arguments.output,
+                  "folder for the results; without it the JSON report goes to stdout")
+      ->type_name("DIR");
+  add_selection(command, arguments);
+  command.callback([&] {
+    arguments.process = "validate";
+    code = run_command(arguments);
+  });
+}
+
+void add_endpoint(CLI::App& command, const std::string& name, Endpoint& endpoint,
+                  const std::string& what) {
+  command
+      .add_option_function<std::string>(
+          name,
+          [&endpoint, name](const std::string& text) {
+            const auto parsed = parse_endpoint(text);
+            if (!parsed) throw CLI::ValidationError(name, parsed.error().message);
+            endpoint = *parsed;
+          },
+          what + "; port 0: any free one")
+      ->type_name("HOST:PORT")
+      ->default_str(to_string(endpoint));
+}
+
+void add_serve(CLI::App& program, ServeOptions& options, int& code) {
+  auto& command = *program.add_subcommand(
+      "serve", "the job service: REST, gRPC and workers in one process, until Ctrl-C");
+  command.add_option("--data", options.data, "folder of CityGML and CityJSON files to serve")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("--state", options.state, "folder for jobs and results")
+      ->type_name("DIR")
+      ->capture_default_str();
+  add_endpoint(command, "--listen", options.listen, "address of the REST API");
+  add_endpoint(command, "--grpc", options.grpc, "address of the gRPC API");
+  command
+      .add_option("--public_url", options.public_url,
+                  "base of all links, for a service behind a proxy; default: from the request")
+      ->type_name("URL");
+  const auto add = [&command](const char* name, auto& value, const char* what) {
+    command.add_option(name, value, what)->capture_default_str();
+  };
+  add("--workers", options.workers, "jobs worked on at the same time");
+  add("--threads", options.threads, "threads of all workers together; 0: one per core");
+  add("--lease_s", options.lease_s, "a worker not heard of for so long counts as dead");
+  add("--max_attempts", options.max_attempts, "deaths of a worker after which its job is failed");
+  add("--job_timeout_s", options.job_timeout_s, "a job that runs longer is failed; 0: no limit");
+  add("--max_open_jobs", options.max_open_jobs, "accepted and running jobs; more are refused");
+  add("--max_body_bytes", options.max_body_bytes, "size of a request");
+  add("--max_connections", options.max_connections, "REST connections at the same time");
+  add("--max_watches", options.max_watches, "gRPC watch streams at the same time");
+  add("--log_level", options.log_level, "debug, info, warning or error");
+  command.footer("Logs are JSON lines on stdout. Exit codes: 0 stopped; 2 could not run.");
+  command.callback([&] { code = serve_command(options); });
+}
+
+int run_program(int argc, char** argv) {
+  CLI::App program{
+      "citymesh turns 3D city models into closed, 2-manifold, simulation-ready meshes.",
+      "citymesh"};
+  program.set_version_flag("--version", "citymesh " + std::string(version()));
+  program.require_subcommand(1);
+  program.get_formatter()->column_width(34);
+
+  int code = kDone;
+  RunArguments run_arguments, validate_arguments;
+  ServeOptions serve_options;
+  add_run(program, run_arguments, code);
+  add_validate(program, validate_arguments, code);
+  add_serve(program, serve_options, code);
+  program.add_subcommand("processes", "prints the processes with their inputs and outputs")
+      ->callback([&] { code = processes_command(); });
+
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // Help and version are no errors; whatever else the command line gets wrong is one kind.
+    return program.exit(error, std::cout, std::cerr) == 0 ? kDone : kCouldNotRun;
+  }
+  return code;
+}
+
+}  // namespace
+}  // namespace citymesh
+
+int main(int argc, char** argv) {
+  try {
+    return citymesh::run_program(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "citymesh: unexpected error: " << error.what() << '\n';
+  } catch (...) {
+    std::cerr << "citymesh: unexpected error\n";
+  }
+  return citymesh::kCouldNotRun;
+}

@@ -1,0 +1,55 @@
+#include <fmt/format.h>
+
+#include <string>
+
+#include "core/pipeline/pipeline.h"
+#include "services/apps/commands.h"
+
+namespace citymesh {
+namespace {
+
+std::string_view kind(const OptionSpec& option) {
+  switch (option.kind) {
+    case OptionKind::Boolean:
+      return "true or false";
+    case OptionKind::Integer:
+      return "whole number";
+    case OptionKind::Number:
+      return "number";
+    case OptionKind::Text:
+      return "text";
+    case OptionKind::TextList:
+      return "list of texts";
+    case OptionKind::BoundingBox:
+      return "box";
+  }
+  return "";
+}
+
+std::string values(const OptionSpec& option) {
+  std::string text(kind(option));
+  if (!option.choices.empty())
+    text = fmt::format("{}{}", option.kind == OptionKind::TextList ? "list of " : "",
+                       fmt::join(option.choices, " | "));
+  if (option.minimum < option.maximum)
+    text += fmt::format(" from {} to {}", option.minimum, option.maximum);
+  return text;
+}
+
+}  // namespace
+
+int processes_command() {
+  for (const auto& process : processes()) {
+    fmt::print("{}\n  {}\n\n  inputs\n", process.id, process.description);
+    for (const auto& option : process.inputs)
+      fmt::print("    {} = {}\n        {} ({})\n", option.name, option.default_json,
+                 option.description, values(option));
+    fmt::print("\n  outputs\n");
+    for (const auto& output : process.outputs)
+      fmt::print("    {:<12} {} ({})\n", output.id, output.title, output.media_type);
+    fmt::print("\n");
+  }
+  return kDone;
+}
+
+}  // namespace citymesh

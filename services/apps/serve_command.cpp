@@ -1,0 +1,136 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include "core/base/version.h"
+#include "core/source/source.h"
+#include "services/apps/commands.h"
+#include "services/apps/signals.h"
+#include "services/jobs/job_manager.h"
+#include "services/rest/server.h"
+#include "services/rpc/server.h"
+#include "services/stores/embedded_store.h"
+#include "services/stores/folder_results.h"
+#include "services/stores/state_folder.h"
+#include "services/telemetry/log.h"
+#include "services/telemetry/metrics.h"
+#include "services/worker/worker.h"
+
+namespace citymesh {
+namespace {
+
+LogLevel log_level(std::string_view name) {
+  if (name == "debug") return LogLevel::Debug;
+  if (name == "warning") return LogLevel::Warning;
+  if (name == "error") return LogLevel::Error;
+  return LogLevel::Info;
+}
+
+TimeMs milliseconds(double seconds) { return static_cast<TimeMs>(std::llround(seconds * 1000)); }
+
+WorkerOptions worker_options(const ServeOptions& options) {
+  const auto threads =
+      options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  return {.workers = options.workers,
+          .threads_per_job = std::max(1u, threads / options.workers),
+          .lease_ms = milliseconds(options.lease_s),
+          .job_timeout_ms = milliseconds(options.job_timeout_s)};
+}
+
+RestOptions rest_options(const ServeOptions& options) {
+  RestOptions rest;
+  rest.host = options.listen.host;
+  rest.port = options.listen.port;
+  rest.public_url = options.public_url;
+  rest.max_body_bytes = options.max_body_bytes;
+  rest.max_connections = options.max_connections;
+  return rest;
+}
+
+RpcOptions rpc_options(const ServeOptions& options) {
+  return {.host = options.grpc.host,
+          .port = options.grpc.port,
+          .max_message_bytes = static_cast<int>(options.max_body_bytes),
+          .max_watches = options.max_watches};
+}
+
+void announce(Log& log, const ServeOptions& options, const Endpoint& rest, const Endpoint& rpc) {
+  const auto url = "http://" + to_string(rest);
+  log.info("listening", {{"rest", url},
+                         {"grpc", to_string(rpc)},
+                         {"public_url", options.public_url},
+                         {"data", options.data.string()},
+                         {"state", options.state.string()},
+                         {"workers", options.workers},
+                         {"version", version()}});
+  for (const auto& endpoint : {rest, rpc})
+    if (!is_loopback(endpoint))
+      log.warning("open_to_the_network",
+                  {{"address", to_string(endpoint)},
+                   {"message", "anyone who reaches this address may submit and read jobs"}});
+  fmt::print(stderr, "citymesh {} serves {}\n  REST  {}/\n  gRPC  {}\n", version(),
+             options.data.string(), url, to_string(rpc));
+}
+
+Result<void> serve(const ServeOptions& options) {
+  if (auto checked = check(options); !checked) return checked;
+  const SourceFactory source = [data = options.data] { return open_files({data}, {}); };
+  if (auto opened = source(); !opened) return opened.error();  // now rather than in the first job
+
+  const StopOnSignal stop;
+  Log log(std::cout, log_level(options.log_level));
+  auto state = StateFolder::open(options.state);
+  if (!state) return state.error();
+  auto store = EmbeddedStore::open(state->jobs_file(), {.max_attempts = options.max_attempts});
+  if (!store) return store.error();
+  auto results = FolderResultStore::open(state->results_folder());
+  if (!results) return results.error();
+  if (state->alone()) {
+    const auto recovered = (*store)->recover();
+    if (!recovered) return recovered.error();
+    if (*recovered > 0) log.warning("jobs_recovered", {{"jobs", *recovered}});
+  }
+  if (auto shared = state->share(); !shared) return shared;
+
+  Metrics metrics;
+  metrics.on_collect([&queue = **store, &metrics] {
+    if (const auto waiting = queue.waiting()) metrics.set_queue_length(*waiting);
+  });
+  JobManager jobs(**store, **store, **results, {.max_open_jobs = options.max_open_jobs});
+  WorkerPool workers(**store, **store, **results, source, log, metrics, worker_options(options));
+  RestServer rest(jobs, metrics, rest_options(options));
+  RpcServer rpc(jobs, metrics, rpc_options(options));
+
+  const auto rest_port = rest.start();
+  if (!rest_port) return rest_port.error();
+  const auto rpc_port = rpc.start();
+  if (!rpc_port) return rpc_port.error();
+  workers.start();
+  announce(log, options, {options.listen.host, *rest_port}, {options.grpc.host, *rpc_port});
+
+  stop.wait();
+  log.info("stopping", {});
+  rest.stop();
+  rpc.stop();
+  workers.stop();
+  log.info("stopped", {});
+  return {};
+}
+
+}  // namespace
+
+int serve_command(const ServeOptions& options) {
+  try {
+    const auto served = serve(options);
+    return served ? kDone : could_not_run(served.error());
+  } catch (const std::exception& error) {
+    return could_not_run(
+        fail(ErrorCode::Internal, fmt::format("unexpected error: {}", error.what())));
+  }
+}
+
+}  // namespace citymesh
