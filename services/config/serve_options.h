@@ -22,7 +22,7 @@ bool is_loopback(const Endpoint& endpoint);
 
 /// All settings of `citymesh serve`.
 struct ServeOptions {
-  std::vector<std::filesystem::path> data{};       ///< files and folders that jobs read from
+  std::filesystem::path data{};                    ///< folder of city models that jobs read
   std::filesystem::path state = "citymesh-state";  ///< jobs and results
   Endpoint listen{"127.0.0.1", 8080};              ///< REST
   Endpoint grpc{"127.0.0.1", 50051};
