@@ -24,8 +24,9 @@ Query::~Query() {
 }
 
 Query& Query::bind(int index, std::string_view text) {
-  check(statement_, sqlite3_bind_text64(statement_, index, text.data(), text.size(),
-                                        SQLITE_TRANSIENT, SQLITE_UTF8));
+  // A null pointer would bind NULL; an empty text is a value.
+  check(statement_, sqlite3_bind_text64(statement_, index, text.empty() ? "" : text.data(),
+                                        text.size(), SQLITE_TRANSIENT, SQLITE_UTF8));
   return *this;
 }
 
