@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/citymodel/choose.h"
 #include "core/citymodel/edges.h"
@@ -43,9 +44,55 @@ bool is_opening(SurfaceType type) {
   return type == SurfaceType::Window || type == SurfaceType::Door;
 }
 
-void drop_openings(Shell& shell) {
-  std::erase_if(shell.faces, [](const Face& face) { return is_opening(face.type); });
+/// Corner mean of a face, in metres.
+Point3 centre_of(const Shell& shell, const Face& face) {
+  Point3 sum{};
+  for (const std::uint32_t corner : face.rings[0]) {
+    const Point3 p = to_metres(shell.points[corner]);
+    sum = {sum.x + p.x, sum.y + p.y, sum.z + p.z};
+  }
+  const auto n = static_cast<double>(face.rings[0].size());
+  return {sum.x / n, sum.y / n, sum.z / n};
 }
+
+/// Takes the openings out of a shell and later gives their type and source to the faces that close
+/// their holes.
+class Openings {
+ public:
+  explicit Openings(Shell& shell) {
+    for (const Face& face : shell.faces)
+      if (is_opening(face.type) && !face.rings.empty() && !face.rings[0].empty())
+        openings_.push_back({centre_of(shell, face), face.type, face.source});
+    std::erase_if(shell.faces, [](const Face& face) { return is_opening(face.type); });
+  }
+
+  void give_back(Shell& shell) const {
+    for (Face& face : shell.faces) {
+      if (face.type != SurfaceType::ClosureSurface || face.source != 0) continue;
+      const Point3 centre = centre_of(shell, face);
+      double nearest_m = kRevealDepth_m;
+      for (const Opening& opening : openings_) {
+        const double d = std::hypot(centre.x - opening.centre.x, centre.y - opening.centre.y,
+                                    centre.z - opening.centre.z);
+        if (d >= nearest_m) continue;
+        nearest_m = d;
+        face.type = opening.type;
+        face.source = opening.source;
+      }
+    }
+  }
+
+ private:
+  static constexpr double kRevealDepth_m =
+      0.5;  ///< how far behind its wall a window or door may lie
+
+  struct Opening {
+    Point3 centre{};
+    SurfaceType type{};
+    std::uint32_t source = 0;
+  };
+  std::vector<Opening> openings_;
+};
 
 struct Soup {
   std::vector<Triangle> triangles{};
@@ -175,6 +222,7 @@ class Ladder {
           step.note("openings_closed", building_.gml_id);
         }
         for (const HealStep& heal_step : kHealSteps) heal_step.apply(shell, step);
+        if (openings) openings->give_back(shell);
         type_faces(shell);
         if (shell.faces.empty() || step.max_displacement_m > options_.max_displacement_m) continue;
         if (!gate_(shell).empty()) continue;

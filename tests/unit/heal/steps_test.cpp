@@ -1,0 +1,100 @@
+#include "core/heal/steps.h"
+
+#include <gtest/gtest.h>
+
+namespace citymesh {
+namespace {
+
+Shell shell_of(std::vector<GridPoint> points, std::vector<std::vector<Ring>> faces) {
+  Shell shell;
+  shell.points = std::move(points);
+  shell.surface_ids.emplace_back();
+  for (auto& rings : faces) {
+    shell.faces.push_back({});
+    shell.faces.back().rings = std::move(rings);
+  }
+  return shell;
+}
+
+TEST(CleanRings, TakesOutRepeatedCornersAndSpikes) {
+  auto shell = shell_of({{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 0}, {20, 0, 0}},
+                        {{{0, 0, 1, 4, 1, 2, 3, 3}}});
+  StepContext context;
+  clean_rings(shell, context);
+  ASSERT_EQ(shell.faces.size(), 1u);
+  EXPECT_EQ(shell.faces[0].rings[0], (Ring{0, 1, 2, 3}));
+}
+
+TEST(CleanRings, SplitsARingThatTouchesItselfInACorner) {
+  // A figure of eight whose loops run the same way.
+  auto shell =
+      shell_of({{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {18, 9, 0}, {18, 18, 0}, {0, 9, 0}, {9, 18, 0}},
+               {{{0, 1, 2, 3, 4, 6, 2, 5}}});
+  StepContext context;
+  clean_rings(shell, context);
+  ASSERT_EQ(shell.faces.size(), 2u);
+}
+
+TEST(CleanRings, ALoopThatRunsBackwardsIsAHole) {
+  auto shell = shell_of({{0, 0, 0}, {90, 0, 0}, {90, 90, 0}, {0, 90, 0}, {30, 20, 0}, {20, 30, 0}},
+                        {{{0, 5, 4, 0, 1, 2, 3}}});
+  StepContext context;
+  clean_rings(shell, context);
+  ASSERT_EQ(shell.faces.size(), 1u);
+  EXPECT_EQ(shell.faces[0].rings.size(), 2u);
+}
+
+TEST(CleanRings, DropsFacesWithoutAnExterior) {
+  auto shell = shell_of({{0, 0, 0}, {9, 0, 0}, {9, 9, 0}}, {{{0, 1}}, {{0, 1, 2}}, {{}}});
+  StepContext context;
+  clean_rings(shell, context);
+  EXPECT_EQ(shell.faces.size(), 1u);
+}
+
+TEST(SnapPoints, TheResultDoesNotDependOnTheOrderOfFaces) {
+  const std::vector<GridPoint> points{{0, 0, 0}, {5, 0, 0}, {9000, 0, 0}, {9000, 9000, 0}};
+  auto a = shell_of(points, {{{0, 2, 3}}, {{1, 2, 3}}});
+  auto b = shell_of({points[1], points[0], points[2], points[3]}, {{{0, 2, 3}}, {{1, 2, 3}}});
+  StepContext context;
+  snap_points(a, context);
+  snap_points(b, context);
+  EXPECT_EQ(a.points[a.faces[0].rings[0][0]], b.points[b.faces[0].rings[0][0]]);
+  EXPECT_EQ(a.points[a.faces[0].rings[0][0]], (GridPoint{0, 0, 0}));
+  EXPECT_EQ(a.faces[0].rings[0][0], a.faces[1].rings[0][0]);
+}
+
+TEST(InsertJunctions, OrdersSeveralVerticesAlongAnEdge) {
+  auto shell = shell_of(
+      {{0, 0, 0}, {9000, 0, 0}, {0, 9000, 0}, {6000, 5, 0}, {3000, 0, 0}, {4000, -9000, 0}},
+      {{{0, 1, 2}}, {{4, 3, 5}}});
+  StepContext context;
+  insert_junctions(shell, context);
+  EXPECT_EQ(shell.faces[0].rings[0], (Ring{0, 4, 3, 1, 2}));
+  EXPECT_EQ(context.repairs.size(), 2u);
+  EXPECT_NEAR(context.max_displacement_m, 0.0005, 1e-9);
+}
+
+TEST(Blocks, ThePercentileIsOfRoofArea) {
+  // 60 % of the roof at 3 m, 40 % at 9 m: the 70th percentile lies on the upper one.
+  auto shell = shell_of({{0, 0, 0},
+                         {100000, 0, 0},
+                         {100000, 100000, 0},
+                         {0, 100000, 0},
+                         {0, 0, 30000},
+                         {60000, 0, 30000},
+                         {60000, 100000, 30000},
+                         {0, 100000, 30000},
+                         {60000, 0, 90000},
+                         {100000, 0, 90000},
+                         {100000, 100000, 90000},
+                         {60000, 100000, 90000}},
+                        {{{3, 2, 1, 0}}, {{4, 5, 6, 7}}, {{8, 9, 10, 11}}});
+  shell.faces[0].type = SurfaceType::GroundSurface;
+  shell.faces[1].type = shell.faces[2].type = SurfaceType::RoofSurface;
+  const Blocks blocks = lod1_blocks(shell, false, {});
+  ASSERT_FALSE(blocks.candidates.empty());
+  EXPECT_EQ(blocks.candidates[0].points.back().z, 90000);
+}
+
+}  // namespace
+}  // namespace citymesh
