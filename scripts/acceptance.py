@@ -105,7 +105,7 @@ def judge(program, checker, path, expected, extra):
         output = Path(folder, "out")
         started = time.monotonic()
         run = subprocess.run([program, "run", "export-for-simulation", "--input", source, "--output", output,
-                              "--format", "obj,stl", *extra], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+                              "--format", "obj,stl", "--threads", "1", *extra], capture_output=True, text=True, stdin=subprocess.DEVNULL)
         seconds = time.monotonic() - started
         if run.returncode not in (0, 1):
             last = (run.stderr.strip().splitlines() or ["no message"])[-1]

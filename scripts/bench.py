@@ -89,7 +89,7 @@ def main():
         try:
             for run in range(arguments.runs):
                 run_s, peak, _ = measured([program, "run", "export-for-simulation", "--input", path, "--output", out / str(run),
-                                           "--format", "obj"], arguments.core)
+                                           "--format", "obj", "--threads", "1"], arguments.core)
                 seconds.append(run_s)
                 peaks.append(peak)
                 shutil.rmtree(out / str(run))
