@@ -215,10 +215,10 @@ class Ladder {
         if (context_.stopped()) return false;
         Shell shell = input.shell;
         StepContext step{tolerance_m, std::max(options_.planarity_tolerance_m, tolerance_m), {}, 0};
+        // An opening in front of or behind its wall leaves the wall open: the wall is closed instead.
+        std::optional<Openings> openings;
         if (without_openings) {
-          // An opening in front of or behind its wall leaves the wall open: the wall is closed
-          // instead.
-          drop_openings(shell);
+          openings.emplace(shell);
           step.note("openings_closed", building_.gml_id);
         }
         for (const HealStep& heal_step : kHealSteps) heal_step.apply(shell, step);

@@ -144,7 +144,9 @@ TEST(Heal, KeepsWithinTheLimitOfDisplacement) {
     HealOptions options;
     options.max_displacement_m = limit_m;
     const auto healed = heal(building, options);
-    if (healed.rung == "healed") EXPECT_LE(healed.max_displacement_m, limit_m);
+    if (healed.rung == "healed") {
+      EXPECT_LE(healed.max_displacement_m, limit_m);
+    }
     EXPECT_NEAR(volume_m3(healed), 480, 1) << limit_m;
   }
 }
