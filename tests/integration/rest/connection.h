@@ -1,0 +1,102 @@
+#pragma once
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace citymesh {
+
+/// A client that sends exactly the bytes it is told to.
+class Connection {
+ public:
+  struct Answer {
+    int status = 0;
+    std::map<std::string, std::string> headers{};  ///< names in lower case
+    std::string body{};
+  };
+
+  explicit Connection(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    const timeval limit{20, 0};
+    ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+    ::setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  }
+  ~Connection() { ::close(socket_); }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  /// False when the server has closed the connection.
+  bool send(std::string_view bytes) {
+    while (!bytes.empty()) {
+      const auto sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+      if (sent <= 0) return false;
+      bytes.remove_prefix(static_cast<std::size_t>(sent));
+    }
+    return true;
+  }
+  void half_close() { ::shutdown(socket_, SHUT_WR); }
+
+  /// The next answer; none when the connection ends before it is complete.
+  std::optional<Answer> read(bool head = false) {
+    Answer answer;
+    std::size_t end = 0;
+    while ((end = buffer_.find("\r\n\r\n")) == std::string::npos)
+      if (!receive()) return std::nullopt;
+    const auto header = buffer_.substr(0, end + 2);
+    buffer_.erase(0, end + 4);
+    answer.status = std::stoi(header.substr(9, 3));
+    for (auto begin = header.find("\r\n") + 2; begin < header.size();) {
+      const auto line_end = header.find("\r\n", begin);
+      const auto colon = header.find(": ", begin);
+      std::string name = header.substr(begin, colon - begin);
+      for (auto& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      answer.headers[name] = header.substr(colon + 2, line_end - colon - 2);
+      begin = line_end + 2;
+    }
+    if (head || !answer.headers.contains("content-length")) return answer;
+    const auto length = std::stoull(answer.headers["content-length"]);
+    while (buffer_.size() < length)
+      if (!receive()) return std::nullopt;
+    answer.body = buffer_.substr(0, length);
+    buffer_.erase(0, length);
+    return answer;
+  }
+
+  /// Everything up to the end of the connection.
+  std::string read_to_end() {
+    while (receive()) continue;
+    return std::exchange(buffer_, {});
+  }
+
+  /// Whether the server closes the connection without a further byte.
+  bool is_closed() { return buffer_.empty() && !receive(); }
+
+ private:
+  bool receive() {
+    char bytes[65536];
+    const auto received = ::recv(socket_, bytes, sizeof bytes, 0);
+    if (received <= 0) return false;
+    buffer_.append(bytes, static_cast<std::size_t>(received));
+    return true;
+  }
+
+  int socket_;
+  std::string buffer_;
+};
+
+}  // namespace citymesh
