@@ -32,7 +32,7 @@ Result<const Parser*> find_parser(std::string_view format) {
   for (const Parser& parser : kParsers)
     if (parser.format == format) return &parser;
   return fail(ErrorCode::Unimplemented,
-              "format " + quoted(format) + " cannot be read back: it has no parser");
+              "format " + in_quotes(format) + " cannot be read back: it has no parser");
 }
 
 std::string_view without_carriage_return(std::string_view line) {
@@ -113,7 +113,7 @@ Error line_error(std::uint64_t line, std::string_view what) {
   return fail(ErrorCode::DataLoss, "line " + std::to_string(line) + ": " + std::string(what));
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::size_t kShown = 60;
   std::string out = "\"";
   for (const char c : text.substr(0, kShown)) out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
@@ -126,8 +126,8 @@ Result<Point3> parse_point(std::string_view rest, std::uint64_t line) {
     const std::string_view word = next_word(rest);
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (word.empty() || error != std::errc{} || end != word.data() + word.size())
-      return line_error(line, "expected a number instead of " + quoted(word));
-    if (!std::isfinite(value)) return line_error(line, quoted(word) + " is not finite");
+      return line_error(line, "expected a number instead of " + in_quotes(word));
+    if (!std::isfinite(value)) return line_error(line, in_quotes(word) + " is not finite");
   }
   if (!next_word(rest).empty()) return line_error(line, "more than three numbers");
   return Point3{xyz[0], xyz[1], xyz[2]};

@@ -35,7 +35,7 @@ std::string_view next_word(std::string_view& rest);
 Error line_error(std::uint64_t line, std::string_view what);
 
 /// A few characters of untrusted text for a message.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 /// Reads the three numbers that end a line. Errors: DataLoss.
 Result<Point3> parse_point(std::string_view rest, std::uint64_t line);

@@ -1,6 +1,7 @@
 #include <simdjson.h>
 
-#include <cmath>
+#include <array>
+#include <cerrno>
 #include <unordered_map>
 
 #include "core/gates/parse.h"
@@ -55,7 +56,7 @@ class BodyPoints {
 
   std::uint32_t index_of(std::uint64_t in_file) {
     if (in_file >= frame_.vertices.size())
-      throw Refused{"object " + quoted(body_.name) + ": vertex " + std::to_string(in_file) +
+      throw Refused{"object " + in_quotes(body_.name) + ": vertex " + std::to_string(in_file) +
                     " of " + std::to_string(frame_.vertices.size())};
     const auto [entry, is_new] =
         known_.try_emplace(in_file, static_cast<std::uint32_t>(body_.points.size()));
@@ -77,7 +78,7 @@ class BodyPoints {
 void read_boundaries(json::array shells, const Frame& frame, ParsedBody& body) {
   BodyPoints points(frame, body);
   const auto refuse = [&body] {
-    return Refused{"object " + quoted(body.name) + ": expected triangles without holes"};
+    return Refused{"object " + in_quotes(body.name) + ": expected triangles without holes"};
   };
   for (json::array shell : shells) {
     for (json::array face : shell) {
@@ -110,7 +111,7 @@ void read_semantics(json::object semantics, ParsedBody& body) {
       }
       const std::uint64_t index = value.get_uint64();
       if (index >= types.size())
-        throw Refused{"object " + quoted(body.name) + ": semantic surface " +
+        throw Refused{"object " + in_quotes(body.name) + ": semantic surface " +
                       std::to_string(index) + " of " + std::to_string(types.size())};
       body.patches.push_back(types[static_cast<std::size_t>(index)]);
     }
@@ -128,7 +129,8 @@ Result<void> read_objects(json::document& document, const Frame& frame,
       ParsedBody body;
       body.name = id;
       if (const std::string type = text_of(geometry["type"]); type != "Solid")
-        throw Refused{"object " + quoted(id) + ": expected a Solid instead of " + quoted(type)};
+        throw Refused{"object " + in_quotes(id) + ": expected a Solid instead of " +
+                      in_quotes(type)};
       read_boundaries(geometry["boundaries"].get_array(), frame, body);
       auto semantics = geometry["semantics"];
       if (semantics.error() == simdjson::NO_SUCH_FIELD) {
@@ -137,7 +139,7 @@ Result<void> read_objects(json::document& document, const Frame& frame,
         read_semantics(semantics.get_object(), body);
       }
       if (body.patches.size() != body.triangles.size())
-        throw Refused{"object " + quoted(id) + ": " + std::to_string(body.patches.size()) +
+        throw Refused{"object " + in_quotes(id) + ": " + std::to_string(body.patches.size()) +
                       " semantic values for " + std::to_string(body.triangles.size()) + " faces"};
       if (auto taken = sink(std::move(body)); !taken) return taken;
     }
@@ -177,8 +179,8 @@ Result<void> parse_cityjson_text(std::string_view text, const ParsedBodySink& si
 
 Result<void> parse_cityjson_file(const std::filesystem::path& file, const ParsedBodySink& sink) {
   std::error_code error;
-  std::filesystem::file_size(file, error);
-  if (error) return file_error(file, error.value());
+  const bool there = std::filesystem::exists(file, error);
+  if (error || !there) return file_error(file, error ? error.value() : ENOENT);
   simdjson::padded_string text;
   if (simdjson::padded_string::load(file.string()).get(text) != simdjson::SUCCESS)
     return file_error(file, EIO);

@@ -18,7 +18,7 @@ class ObjReader {
     if (keyword == "f") return face(rest, number);
     if (keyword == "g") return group(rest, number);
     if (keyword == "o") return object(rest, number);
-    return line_error(number, "unknown statement " + quoted(keyword));
+    return line_error(number, "unknown statement " + in_quotes(keyword));
   }
 
   Result<void> end() {
@@ -44,8 +44,8 @@ class ObjReader {
     const std::string_view name = next_word(rest);
     const PatchName parts = split_patch_name(name);
     if (!body_ || parts.body != body_->name || parts.patch.empty() || !next_word(rest).empty())
-      return line_error(number, "group " + quoted(name) + " is no patch of object " +
-                                    quoted(body_ ? body_->name : ""));
+      return line_error(number, "group " + in_quotes(name) + " is no patch of object " +
+                                    in_quotes(body_ ? body_->name : ""));
     patch_ = parts.patch;
     return {};
   }
@@ -66,10 +66,10 @@ class ObjReader {
       std::uint64_t index = 0;
       const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
       if (word.empty() || error != std::errc{} || end != word.data() + word.size())
-        return line_error(number, "expected a vertex number instead of " + quoted(word));
+        return line_error(number, "expected a vertex number instead of " + in_quotes(word));
       if (index <= vertices_before_ || index > vertices_before_ + body_->points.size())
         return line_error(number, "vertex " + std::to_string(index) +
-                                      " does not belong to object " + quoted(body_->name));
+                                      " does not belong to object " + in_quotes(body_->name));
       corner = static_cast<std::uint32_t>(index - vertices_before_ - 1);
     }
     if (!next_word(rest).empty()) return line_error(number, "a face with more than three corners");

@@ -48,7 +48,7 @@ class StlReader {
 
   Result<void> end() {
     if (expected_ != Expected::Solid)
-      return fail(ErrorCode::DataLoss, "the file ends inside of solid " + quoted(solid_));
+      return fail(ErrorCode::DataLoss, "the file ends inside of solid " + in_quotes(solid_));
     return flush();
   }
 
@@ -56,7 +56,8 @@ class StlReader {
   enum class Expected { Solid, Facet, Loop, Vertex, EndLoop, EndFacet };
 
   static Error unexpected(std::string_view found, std::string_view expected, std::uint64_t number) {
-    return line_error(number, "expected " + quoted(expected) + " instead of " + quoted(found));
+    return line_error(number,
+                      "expected " + in_quotes(expected) + " instead of " + in_quotes(found));
   }
 
   Result<void> begin_solid(std::string_view rest, std::uint64_t number) {
@@ -74,7 +75,7 @@ class StlReader {
 
   Result<void> end_solid(std::string_view rest, std::uint64_t number) {
     if (next_word(rest) != solid_)
-      return line_error(number, "expected the end of solid " + quoted(solid_));
+      return line_error(number, "expected the end of solid " + in_quotes(solid_));
     expected_ = Expected::Solid;
     return {};
   }
