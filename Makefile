@@ -7,7 +7,7 @@ SHELL := /bin/bash
 JOBS  ?= $(shell nproc)
 TESTS ?= .*
 LISTEN ?= 127.0.0.1:8080
-GRPC   ?= 127.0.0.1:8081
+GRPC   ?= 127.0.0.1:50051
 DATA   ?= tests/data/berlin
 
 help: ## this list

@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+"""Runs the code blocks of the README, as they stand, against a server of our own: only the two addresses and the place of the
+program are replaced.
+
+    readme_test.py CITYMESH
+"""
+import json
+import os
+import re
+import signal
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+PROGRAM = None
+BLOCK = re.compile(r"```(sh|python)\n(.*?)```", re.DOTALL)
+READY_LIMIT_S = 60
+
+
+def python_with_grpc():
+    """Debian's Python has Debian's grpc; another one in front of it may not."""
+    for python in (sys.executable, "/usr/bin/python3"):
+        if subprocess.run([python, "-c", "import grpc, google.protobuf"], capture_output=True).returncode == 0:
+            return python
+    return None
+
+
+class Readme(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        blocks = BLOCK.findall((ROOT / "README.md").read_text(encoding="utf-8"))
+        cls.run_block, cls.curl_block, cls.python_block, cls.stubs_block, cls.grpc_block = blocks
+        cls.folder = Path(tempfile.mkdtemp(prefix="citymesh-readme-"))
+        for name in ("tests", "proto"):
+            (cls.folder / name).symlink_to(ROOT / name)
+        cls.log = open(cls.folder / "server.log", "wb")
+        cls.server = subprocess.Popen(
+            [PROGRAM, "serve", "--data", "tests/data/berlin", "--state", "state", "--listen", "127.0.0.1:0", "--grpc", "127.0.0.1:0"],
+            cwd=cls.folder, stdout=cls.log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
+        try:
+            cls.rest, cls.grpc = cls.addresses()
+        except BaseException:
+            cls.tearDownClass()
+            raise
+
+    @classmethod
+    def addresses(cls):
+        limit = time.monotonic() + READY_LIMIT_S
+        while time.monotonic() < limit and cls.server.poll() is None:
+            for line in (cls.folder / "server.log").read_text(errors="replace").splitlines():
+                if line.startswith("{") and '"listening"' in line:
+                    event = json.loads(line)
+                    return event["rest"].removeprefix("http://"), event["grpc"]
+            time.sleep(0.05)
+        raise AssertionError("the server did not say where it listens:\n" + (cls.folder / "server.log").read_text(errors="replace"))
+
+    @classmethod
+    def tearDownClass(cls):
+        if cls.server.poll() is None:
+            cls.server.send_signal(signal.SIGTERM)
+            cls.server.wait(30)
+        cls.log.close()
+        shutil.rmtree(cls.folder, ignore_errors=True)
+
+    def run_example(self, block, python=sys.executable):
+        kind, text = block
+        text = text.replace("127.0.0.1:8080", self.rest).replace("127.0.0.1:50051", self.grpc)
+        text = text.replace("build/release/services/apps/citymesh", str(PROGRAM))
+        command = [python, "-B", "-c", text] if kind == "python" else ["bash", "-euc", text]
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL,
+                              env={**os.environ, "no_proxy": "*"})
+        self.assertEqual(done.returncode, 0, f"{text}\n{done.stdout}\n{done.stderr}")
+        return done.stdout
+
+    def counts(self, report):
+        counts = json.loads((self.folder / report).read_text(encoding="utf-8"))["counts"]
+        self.assertGreater(counts["delivered"], 0)
+        return counts
+
+    def test_command_line(self):
+        self.run_example(self.run_block)
+        self.counts("out/mitte/report.json")
+        self.assertTrue((self.folder / "out/mitte/model.obj").exists())
+        self.assertTrue((self.folder / "out/mitte/model.stl").exists())
+
+    def test_all_ways_give_the_same_mesh(self):
+        self.assertIn("successful", self.run_example(self.curl_block))
+        self.counts("out/curl/report.json")
+        mesh = (self.folder / "out/curl/model.obj").read_bytes()
+
+        self.assertIn("successful", self.run_example(self.python_block))
+        self.assertEqual(mesh, (self.folder / "out/python/model.obj").read_bytes())
+
+        python = python_with_grpc()
+        if python is None or shutil.which("grpc_python_plugin") is None:
+            self.skipTest("gRPC for Python is not installed: python3-grpcio, protobuf-compiler-grpc")
+        self.run_example(self.stubs_block)
+        self.assertIn("SUCCESSFUL", self.run_example(self.grpc_block, python))
+        self.assertEqual(mesh, (self.folder / "out/grpc/model.obj").read_bytes())
+
+
+if __name__ == "__main__":
+    PROGRAM = Path(sys.argv.pop(1)).resolve()
+    unittest.main(verbosity=2)
