@@ -17,21 +17,29 @@ struct Item {
   PaintStep step{};
   std::vector<Point3> corners{};
   Point3 normal{};
-  double plane = 0;  // normal · x = plane
-  double min_x = 0, max_x = 0, min_y = 0, max_y = 0, min_depth = 0, max_depth = 0;
+  double plane = 0;                                   // normal · x = plane
+  double min_x = 0, max_x = 0, min_y = 0, max_y = 0;  // on the screen
+  double near = 0, far = 0, low = 0, high = 0;        // view space y and z
+  double min_depth = 0, max_depth = 0;
 };
 
 double dot(const Point3& a, const Point3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 Item make_item(PaintStep step, std::vector<Point3> corners, const Point3& normal) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
-  Item item{step, std::move(corners), normal, 0, kFar, -kFar, kFar, -kFar, kFar, -kFar};
+  Item item{step, std::move(corners), normal};
+  item.min_x = item.min_y = item.near = item.low = item.min_depth = kFar;
+  item.max_x = item.max_y = item.far = item.high = item.max_depth = -kFar;
   for (const Point3& p : item.corners) {
     item.plane += dot(normal, p) / static_cast<double>(item.corners.size());
     item.min_x = std::min(item.min_x, p.x);
     item.max_x = std::max(item.max_x, p.x);
     item.min_y = std::min(item.min_y, screen_y(p));
     item.max_y = std::max(item.max_y, screen_y(p));
+    item.near = std::min(item.near, p.y);
+    item.far = std::max(item.far, p.y);
+    item.low = std::min(item.low, p.z);
+    item.high = std::max(item.high, p.z);
     item.min_depth = std::min(item.min_depth, depth(p));
     item.max_depth = std::max(item.max_depth, depth(p));
   }
@@ -54,15 +62,19 @@ bool may_overlap(const Item& a, const Item& b) {
          a.min_y < b.max_y - kTouch_m && b.min_y < a.max_y - kTouch_m;
 }
 
+/// Whether `a` hides nothing of `b`. What hides something is nearer, higher and on the viewer's
+/// side of both planes.
+bool cannot_hide(const Item& a, const Item& b) {
+  return a.near >= b.far || a.high <= b.low || a.min_depth >= b.max_depth || all_on_side(a, b, 1) ||
+         all_on_side(b, a, -1);
+}
+
 Order order_of(const Item& a, const Item& b) {
   if (!may_overlap(a, b)) return Order::None;
-  const bool a_below = all_on_side(a, b, 1) || all_on_side(b, a, -1);
-  const bool b_below = all_on_side(b, a, 1) || all_on_side(a, b, -1);
-  if (a_below != b_below) return a_below ? Order::FirstBelow : Order::SecondBelow;
-  if (a_below) return Order::None;  // in one plane
-  if (a.min_depth >= b.max_depth) return Order::FirstBelow;
-  if (b.min_depth >= a.max_depth) return Order::SecondBelow;
-  return Order::Unclear;
+  const bool a_below = cannot_hide(a, b), b_below = cannot_hide(b, a);
+  if (a_below && b_below) return Order::None;
+  if (a_below) return Order::FirstBelow;
+  return b_below ? Order::SecondBelow : Order::Unclear;
 }
 
 /// Depth of a triangle's plane at a place of the screen.

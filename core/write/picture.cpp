@@ -93,7 +93,7 @@ Colour shaded(const Colour& base, DrawnFace::Kind kind, double light) {
     case DrawnFace::Kind::Wall:
       return mix(mix(base, kShade, 0.46), mix(base, kWhite, 0.12), light);
     case DrawnFace::Kind::Roof:
-      return mix(mix(base, kShade, 0.20), mix(base, kWhite, 0.55), light);
+      return mix(mix(base, kShade, 0.20), mix(base, kWhite, 0.72), light);
     case DrawnFace::Kind::Opening:
       return mix(mix(kGlass, kShade, 0.35), mix(kGlass, kWhite, 0.25), light);
   }
@@ -399,7 +399,7 @@ void append_faces(std::string& svg, const Drawing& drawing) {
     }
     // A piece of a face: its stroke hides the seam to the next piece, edges of the face come on
     // top.
-    svg += "\" style=\"stroke:";
+    svg += "\" style=\"stroke-width:.9;stroke:";
     append_colour(svg, fill_of(drawn));
     svg += "\" d=\"" + path + "\"/>\n";
     const std::string edges = face_edges(drawing.page, face, step.triangle);
@@ -411,7 +411,7 @@ void append_faces(std::string& svg, const Drawing& drawing) {
 }
 
 void append_north_arrow(std::string& svg, double x, double y) {
-  constexpr double kRadius = 27;
+  constexpr double kRadius = 30;
   const auto on_page = [&](double east, double north) {
     const Point3 view = to_view({east * kRadius, north * kRadius, 0});
     std::string text;
@@ -424,10 +424,10 @@ void append_north_arrow(std::string& svg, double x, double y) {
   append_px(svg, x);
   svg += "\" cy=\"";
   append_px(svg, y);
-  svg += "\" rx=\"27\" ry=\"17\" fill=\"#fff\" fill-opacity=\".7\" stroke=\"#8b94a3\"/>\n";
-  svg += "<path fill=\"#2f3b52\" d=\"M" + on_page(0, 0.92) + "L" + on_page(-0.3, -0.5) + "L" +
+  svg += "\" rx=\"30\" ry=\"18.9\" fill=\"#fff\" fill-opacity=\".7\" stroke=\"#8b94a3\"/>\n";
+  svg += "<path fill=\"#2f3b52\" d=\"M" + on_page(0, 0.92) + "L" + on_page(-0.42, -0.6) + "L" +
          on_page(0, -0.25) + "z\"/>\n<path fill=\"#9aa4b5\" d=\"M" + on_page(0, 0.92) + "L" +
-         on_page(0.3, -0.5) + "L" + on_page(0, -0.25) + "z\"/>\n";
+         on_page(0.42, -0.6) + "L" + on_page(0, -0.25) + "z\"/>\n";
   const Point3 tip = to_view({0, 1.42 * kRadius, 0});
   append_text(svg, x + tip.x, y - screen_y(tip) + 5, "n", "N");
 }
@@ -458,9 +458,9 @@ void append_legend(std::string& svg, const RunReport& report, double y) {
   double x = kWidth - kMargin;
   for (auto entry = report.rungs.rbegin(); entry != report.rungs.rend(); ++entry) {
     if (entry->second == 0) continue;
-    const std::string label = entry->first + "  " + grouped_digits(entry->second);
-    x -= 7.4 * static_cast<double>(entry->first.size()) +
-         8.5 * static_cast<double>(std::to_string(entry->second).size()) + 44;
+    const std::string label = entry->first + "\u2002" + grouped_digits(entry->second);
+    x -= 8.2 * static_cast<double>(entry->first.size()) +
+         9.2 * static_cast<double>(std::to_string(entry->second).size()) + 52;
     const Colour& base = rung_style(rung_index(entry->first)).colour;
     // A small cube in the light of the scene.
     const std::array<std::pair<std::string_view, Colour>, 3> sides{
@@ -497,7 +497,7 @@ std::string Picture::svg(const RunReport& report) const {
   const bool empty = faces.empty();
   const Drawing drawing = lay_out(std::move(faces), blocks_);
 
-  std::string title = report.process.empty() ? "citymesh" : report.process;
+  const std::string title = report.process.empty() ? "citymesh" : report.process;
   std::string subtitle = grouped_digits(report.counts.delivered) +
                          (report.counts.delivered == 1 ? " building" : " buildings") +
                          " delivered of " + grouped_digits(report.counts.requested);

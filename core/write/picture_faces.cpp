@@ -37,7 +37,7 @@ struct PatchMap {
 using Edges = std::unordered_map<std::uint64_t, std::uint32_t>;  // directed edge → triangle
 
 PatchMap grow_patches(const TriangleMesh& mesh, const std::vector<Point3>& normals,
-                     const Edges& edges) {
+                      const Edges& edges) {
   constexpr std::uint32_t kNone = 0xFFFFFFFF;
   PatchMap patches;
   patches.patch_of.assign(mesh.triangles.size(), kNone);

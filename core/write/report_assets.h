@@ -31,10 +31,10 @@ section{background:var(--card);border:1px solid var(--line);border-radius:12px;p
 .share i{display:block;min-width:3px}
 .facts{display:flex;flex-wrap:wrap;gap:4px 26px;margin:14px 0 0;color:var(--soft)}
 .facts b{color:var(--ink);font-weight:600}
-.bars{display:grid;grid-template-columns:minmax(110px,max-content) 1fr max-content;gap:9px 14px;align-items:center;margin:0}
-.bars dt{font-weight:600}.bars dt small{display:block;font-weight:400;color:var(--soft)}
+.bars{display:grid;grid-template-columns:1fr max-content;gap:2px 14px;align-items:baseline;margin:0}
+.bars dt{font-weight:600}.bars dt small{font-weight:400;color:var(--soft);margin-left:8px}
 .bars dd{margin:0}.bars .n{text-align:right}
-.bar{height:14px;border-radius:4px;background:var(--track);overflow:hidden}
+.bars .bar{grid-column:1/-1;height:10px;border-radius:4px;background:var(--track);overflow:hidden;margin-bottom:9px}
 .bar i{display:block;height:100%;min-width:3px;border-radius:4px;background:var(--accent)}
 .asked{display:grid;grid-template-columns:max-content 1fr;gap:4px 18px;margin:0}
 .asked dt{color:var(--soft)}.asked dd{margin:0;overflow-wrap:anywhere}

@@ -91,9 +91,10 @@ void append_bar(std::string& html, std::string_view name, std::string_view meani
                 std::uint64_t count, std::uint64_t most, std::string_view colour) {
   html += "<dt>" + escaped(name);
   if (!meaning.empty()) html += "<small>" + escaped(meaning) + "</small>";
-  html += "</dt><dd><div class=\"bar\"><i style=\"width:" + percent(count, most);
+  html += "</dt><dd class=\"n\">" + grouped(count) +
+          "</dd><dd class=\"bar\"><i style=\"width:" + percent(count, most);
   if (!colour.empty()) html += ";background:" + std::string(colour);
-  html += "\"></i></div></dd><dd class=\"n\">" + grouped(count) + "</dd>\n";
+  html += "\"></i></dd>\n";
 }
 
 std::string option_text(const nlohmann::ordered_json& value) {
