@@ -62,6 +62,14 @@ Axis dominant_axis(const GridPoint& a, const GridPoint& b, const GridPoint& c) {
   return x >= y ? Axis::X : Axis::Y;
 }
 
+bool triangles_meet(const std::array<GridPoint, 3>& s, const std::array<GridPoint, 3>& t) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (segment_meets_triangle(s[i], s[(i + 1) % 3], t)) return true;
+    if (segment_meets_triangle(t[i], t[(i + 1) % 3], s)) return true;
+  }
+  return false;
+}
+
 bool triangles_clash(const std::array<GridPoint, 3>& s, const std::array<GridPoint, 3>& t) {
   // Corner i of s equals corner partner[i] of t, or -1.
   std::array<int, 3> partner{-1, -1, -1};
@@ -98,11 +106,7 @@ bool triangles_clash(const std::array<GridPoint, 3>& s, const std::array<GridPoi
            segment_meets_triangle(t[(j + 1) % 3], t[(j + 2) % 3], s);
   }
 
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (segment_meets_triangle(s[i], s[(i + 1) % 3], t)) return true;
-    if (segment_meets_triangle(t[i], t[(i + 1) % 3], s)) return true;
-  }
-  return false;
+  return triangles_meet(s, t);
 }
 
 }  // namespace citymesh

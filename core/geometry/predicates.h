@@ -68,6 +68,9 @@ Point3 normal_of(const GridPoint& a, const GridPoint& b, const GridPoint& c);
 /// The axis along which the triangle's projection is largest; exact. Any axis for a degenerate one.
 Axis dominant_axis(const GridPoint& a, const GridPoint& b, const GridPoint& c);
 
+/// Whether two closed triangles have a point in common. Neither may be degenerate.
+bool triangles_meet(const std::array<GridPoint, 3>& s, const std::array<GridPoint, 3>& t);
+
 /// How two triangles of a shell may meet: through the vertices they share, and nowhere else.
 /// True when the closed triangles have a point in common that is not explained by shared corners
 /// (identical coordinates). Triangles that share all three corners are not judged here.

@@ -11,6 +11,7 @@
 #include "core/base/version.h"
 #include "core/gates/gates.h"
 #include "core/geometry/measure.h"
+#include "core/pipeline/contacts.h"
 #include "core/pipeline/inputs.h"
 #include "core/pipeline/names.h"
 #include "core/pipeline/pipeline.h"
@@ -40,7 +41,15 @@ class Totals {
     for (const Body& body : bodies->bodies) add(body.mesh);
   }
 
+  /// What was left out of a building by choice.
+  void add_skipped(const Building& building) {
+    installations_ += building.skipped_installations;
+    ade_elements_ += building.skipped_ade_elements;
+    for (const Building& part : building.parts) add_skipped(part);
+  }
+
   void add(const TriangleMesh& mesh) {
+    contacts_.add(mesh);
     ++report_.bodies;
     report_.points += mesh.points.size();
     report_.triangles += mesh.triangles.size();
@@ -62,6 +71,13 @@ class Totals {
   }
 
   RunReport finish() {
+    report_.contacts = contacts_.count();
+    if (installations_ > 0)
+      report_.warnings.push_back(
+          fmt::format("{} building installations were left out", installations_));
+    if (ade_elements_ > 0)
+      report_.warnings.push_back(
+          fmt::format("{} elements of extensions (ADE) were skipped", ade_elements_));
     report_.rungs.assign(rungs_.begin(), rungs_.end());
     report_.drop_reasons.assign(reasons_.begin(), reasons_.end());
     if (report_.triangles > 0) {
@@ -82,6 +98,8 @@ class Totals {
   }
 
   RunReport report_;
+  Contacts contacts_;
+  std::uint64_t installations_ = 0, ade_elements_ = 0;
   std::map<std::string, std::uint64_t> rungs_, reasons_;
   double min_edge_m_ = std::numeric_limits<double>::infinity();
   double max_cosine_ = -1;
@@ -243,7 +261,9 @@ class Run {
     time("heal", start);
 
     const double write_start = context_.now();
-    for (const ProcessedBuilding& building : processed) {
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      const ProcessedBuilding& building = processed[i];
+      totals_.add_skipped(batch[i].building);
       const BuildingBodies* bodies = building.bodies ? &*building.bodies : nullptr;
       totals_.add(building.report, bodies);
       if (bodies) {
@@ -288,7 +308,8 @@ class Run {
     RunOutcome outcome;
     outcome.report = totals_.finish();
     outcome.report.inputs = selection.inputs;
-    outcome.report.warnings = selection.warnings;
+    outcome.report.warnings.insert(outcome.report.warnings.begin(), selection.warnings.begin(),
+                                   selection.warnings.end());
     for (const std::string& id : selection.missing_ids)
       outcome.report.warnings.push_back(fmt::format("object `{}` is in none of the inputs", id));
     if (outcome.report.counts.requested == 0)

@@ -1,0 +1,128 @@
+#include "core/pipeline/inputs.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/pipeline/pipeline.h"
+
+namespace citymesh {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr std::string_view kExport = "export-for-simulation";
+
+Error refused(std::string_view json) {
+  const auto canonical = canonical_inputs(kExport, json);
+  EXPECT_FALSE(canonical) << *canonical;
+  return canonical ? Error{} : canonical.error();
+}
+
+TEST(Inputs, DefaultsCompleteWhatIsNotGiven) {
+  const auto canonical = canonical_inputs(kExport, "");
+  ASSERT_TRUE(canonical);
+  const auto json = nlohmann::json::parse(*canonical);
+  EXPECT_EQ(json["formats"], nlohmann::json::array({"obj"}));
+  EXPECT_EQ(json["lod"], nlohmann::json::array({"2", "3", "1", "0"}));
+  EXPECT_EQ(json["on_failure"], "block");
+  EXPECT_EQ(json["snap_tolerance_m"], 0.001);
+  EXPECT_TRUE(json["bbox"].is_null());
+  for (const OptionSpec& option : find_process(kExport)->inputs)
+    EXPECT_TRUE(json.contains(std::string(option.name))) << option.name;
+}
+
+TEST(Inputs, CanonicalFormIsAFixedPoint) {
+  const auto once =
+      canonical_inputs(kExport, R"({"formats":"stl","bbox":{"bbox":[13.3,52.5,13.4,52.6]}})");
+  ASSERT_TRUE(once);
+  const auto twice = canonical_inputs(kExport, *once);
+  ASSERT_TRUE(twice);
+  EXPECT_EQ(*once, *twice);
+}
+
+TEST(Inputs, TheTableOfFormatsIsTheTableOfWriters) {
+  for (const OptionSpec& option : find_process(kExport)->inputs)
+    if (option.name == "formats") {
+      ASSERT_EQ(option.choices.size(), formats().size());
+      for (std::size_t i = 0; i < formats().size(); ++i)
+        EXPECT_EQ(option.choices[i], formats()[i].key);
+    }
+}
+
+TEST(Inputs, ABoxIsCrs84UnlessItSaysSo) {
+  const auto canonical = canonical_inputs(kExport, R"({"bbox":{"bbox":[13.3,52.5,13.4,52.6]}})");
+  ASSERT_TRUE(canonical);
+  const auto inputs = read_inputs(*canonical);
+  ASSERT_TRUE(inputs);
+  EXPECT_EQ(inputs->query.bbox->crs.id, "OGC:CRS84");
+  EXPECT_EQ(inputs->query.bbox->min_x, 13.3);
+}
+
+TEST(Inputs, AGeographicEpsgBoxIsLatitudeFirst) {
+  const auto canonical = canonical_inputs(
+      kExport,
+      R"({"bbox":{"bbox":[52.5,13.3,52.6,13.4],"crs":"http://www.opengis.net/def/crs/EPSG/0/4326"}})");
+  ASSERT_TRUE(canonical);
+  const auto inputs = read_inputs(*canonical);
+  ASSERT_TRUE(inputs);
+  EXPECT_EQ(inputs->query.bbox->min_x, 13.3);
+  EXPECT_EQ(inputs->query.bbox->max_y, 52.6);
+}
+
+TEST(Inputs, ASixNumberBoxLimitsTheHeight) {
+  const auto canonical =
+      canonical_inputs(kExport, R"({"bbox":{"bbox":[1,2,3,4,5,6],"crs":"EPSG:25833"}})");
+  ASSERT_TRUE(canonical);
+  const auto inputs = read_inputs(*canonical);
+  ASSERT_TRUE(inputs && inputs->query.bbox->z_range_m);
+  EXPECT_EQ((*inputs->query.bbox->z_range_m)[1], 6);
+}
+
+TEST(Inputs, WrongValuesAreNamedWithWhatIsExpected) {
+  EXPECT_THAT(refused(R"({"bogus":1})").message, HasSubstr("`bogus`"));
+  EXPECT_THAT(refused(R"({"bogus":1})").message, HasSubstr("bbox_rule"));
+  EXPECT_THAT(refused(R"({"formats":["dwg"]})").message, HasSubstr("\"dwg\""));
+  EXPECT_THAT(refused(R"({"formats":["dwg"]})").message, HasSubstr("stl_binary"));
+  EXPECT_THAT(refused(R"({"formats":7})").message, HasSubstr("list of texts"));
+  EXPECT_THAT(refused(R"({"on_failure":"explode"})").message, HasSubstr("block, drop"));
+  EXPECT_THAT(refused(R"({"unite_neighbours":"yes"})").message, HasSubstr("true or false"));
+  EXPECT_THAT(refused(R"({"snap_tolerance_m":-1})").message, HasSubstr("0.0001 to 1"));
+  EXPECT_THAT(refused(R"({"snap_tolerance_m":"1"})").message, HasSubstr("a number"));
+  EXPECT_THAT(refused(R"({"lod":[]})").message, HasSubstr("`lod`"));
+  EXPECT_THAT(refused(R"({"lod":["high"]})").message, HasSubstr("high"));
+  EXPECT_THAT(refused(R"({"crs":"EPSG:99999999"})").message, HasSubstr("`crs`"));
+  EXPECT_THAT(refused(R"({"crs":"EPSG:4326"})").message, HasSubstr("geographic"));
+}
+
+TEST(Inputs, WrongBoxesAreNamed) {
+  EXPECT_THAT(refused(R"({"bbox":[1,2,3,4]})").message, HasSubstr("`bbox`"));
+  EXPECT_THAT(refused(R"({"bbox":{"bbox":[1,2,3]}})").message, HasSubstr("6 numbers"));
+  EXPECT_THAT(refused(R"({"bbox":{"bbox":[3,2,1,4]}})").message, HasSubstr("axis 1"));
+  EXPECT_THAT(refused(R"({"bbox":{"bbox":[1,2,3,"x"]}})").message, HasSubstr("finite"));
+  EXPECT_THAT(refused(R"({"bbox":{"bbox":[1,2,3,4],"crs":"nowhere"}})").message,
+              HasSubstr("nowhere"));
+}
+
+TEST(Inputs, BrokenJsonIsRefusedWithItsPlace) {
+  EXPECT_THAT(refused(R"({"formats":)").message, HasSubstr("not valid JSON"));
+  EXPECT_THAT(refused("[1]").message, HasSubstr("JSON object"));
+  EXPECT_EQ(refused("{\"a\":" + std::string(100000, '[')).code, ErrorCode::InvalidArgument);
+  EXPECT_EQ(refused(std::string(9u << 20, ' ')).code, ErrorCode::ResourceExhausted);
+}
+
+TEST(Inputs, AnUnknownProcessIsNotFoundAndTheOthersAreNamed) {
+  const auto canonical = canonical_inputs("melt", "{}");
+  ASSERT_FALSE(canonical);
+  EXPECT_EQ(canonical.error().code, ErrorCode::NotFound);
+  EXPECT_THAT(canonical.error().message, HasSubstr(std::string(kExport)));
+}
+
+TEST(Inputs, WhatIsNotBuiltIsSaidSo) {
+  EXPECT_EQ(refused(R"({"unite_neighbours":true})").code, ErrorCode::Unimplemented);
+  EXPECT_EQ(refused(R"({"installations":"keep"})").code, ErrorCode::Unimplemented);
+}
+
+}  // namespace
+}  // namespace citymesh
