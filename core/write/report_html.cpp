@@ -75,8 +75,8 @@ std::string_view reason_meaning(std::string_view reason) {
       {{"no_geometry", "the source has no geometry of the wanted levels of detail"},
        {"no_height", "nothing tells how high it is"},
        {"duplicate_id", "the id was there before"},
-       {"no_footprint", "its faces cover no area on the ground"},
-       {"gates", "no rung of the ladder passed the delivery gates"}}};
+       {"not_healed", "no allowed rung of the ladder passed the delivery gates"},
+       {"building_dropped", "part of a building that was dropped"}}};
   for (const auto& [name, meaning] : kMeanings)
     if (name == reason) return meaning;
   return {};
@@ -158,7 +158,7 @@ void append_summary(std::string& html, const RunReport& report, const ReportFind
     fact("shortest edge", rounded(report.min_edge_m, 4) + " m");
     fact("smallest angle", rounded(report.min_angle_deg, 3) + "°");
   }
-  fact("contacts between bodies", grouped(report.contacts));
+  if (report.contacts) fact("contacts between bodies", grouped(*report.contacts));
   if (report.part_counts.requested > 0)
     fact("parts", grouped(report.part_counts.delivered) + " of " +
                       grouped(report.part_counts.requested) + " delivered");

@@ -185,7 +185,10 @@ void append_report_tail(std::string& json, const RunReport& report) {
   mesh.count("bodies", report.bodies);
   mesh.count("points", report.points);
   mesh.count("triangles", report.triangles);
-  mesh.count("contacts", report.contacts);
+  if (report.contacts)
+    mesh.count("contacts", *report.contacts);
+  else
+    mesh.key("contacts") += "null";
   mesh.number("volume_m3", report.volume_m3);
   mesh.number("area_m2", report.area_m2);
   mesh.number("min_edge_m", report.min_edge_m);
