@@ -1,0 +1,144 @@
+#include "core/source/frame.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace citymesh::source {
+namespace {
+
+// No city lies further south or north.
+constexpr double kSouthernmost_deg = -60, kNorthernmost_deg = 80;
+// Data may reach a little beyond the official area of use.
+constexpr double kAreaMargin_deg = 1.0;
+// The exact grid reaches 214 km; what is further from the middle of the data is astray.
+constexpr double kAstray_m = 200'000.0;
+constexpr double kAstray_deg = 2.0;
+
+bool plausible_place(const CrsFacts& facts, double longitude_deg, double latitude_deg) {
+  if (!(latitude_deg >= kSouthernmost_deg && latitude_deg <= kNorthernmost_deg)) return false;
+  if (!(std::abs(longitude_deg) <= 360)) return false;
+  const Box3& area = facts.area_of_use_deg;
+  if (area.is_empty()) return true;
+  if (latitude_deg < area.min.y - kAreaMargin_deg || latitude_deg > area.max.y + kAreaMargin_deg)
+    return false;
+  for (const double turn : {0.0, 360.0, -360.0})
+    if (longitude_deg + turn >= area.min.x - kAreaMargin_deg &&
+        longitude_deg + turn <= area.max.x + kAreaMargin_deg)
+      return true;
+  return false;
+}
+
+bool plausible(const Crs& crs, const CrsFacts& facts, Point3 centre, CrsBook& book) {
+  if (facts.geographic) return plausible_place(facts, centre.x, centre.y);
+  const auto& to_degrees = book.transformer(crs, Crs{"OGC:CRS84"});
+  std::array<Point3, 1> place{centre};
+  if (!to_degrees || !to_degrees->apply(place)) return false;
+  return plausible_place(facts, place[0].x, place[0].y);
+}
+
+Point3 centre_of(const Box3& box) {
+  return {(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2, (box.min.z + box.max.z) / 2};
+}
+
+}  // namespace
+
+const Result<CrsFacts>& CrsBook::facts(const Crs& crs) {
+  const auto found = facts_.find(crs.id);
+  if (found != facts_.end()) return found->second;
+  return facts_.emplace(crs.id, describe_crs(crs)).first->second;
+}
+
+const Result<Transformer>& CrsBook::transformer(const Crs& from, const Crs& to) {
+  const std::pair key{from.id, to.id};
+  const auto found = transformers_.find(key);
+  if (found != transformers_.end()) return found->second;
+  return transformers_.emplace(key, Transformer::create(from, to)).first->second;
+}
+
+Box3 with_axes_swapped(Box3 box) {
+  std::swap(box.min.x, box.min.y);
+  std::swap(box.max.x, box.max.y);
+  return box;
+}
+
+Box3 robust_extent(const std::vector<Box3>& boxes, double max_distance) {
+  std::vector<double> xs, ys;
+  for (const Box3& box : boxes) {
+    xs.push_back(centre_of(box).x);
+    ys.push_back(centre_of(box).y);
+  }
+  if (boxes.empty()) return {};
+  const auto middle = static_cast<std::ptrdiff_t>(boxes.size() / 2);
+  std::nth_element(xs.begin(), xs.begin() + middle, xs.end());
+  std::nth_element(ys.begin(), ys.begin() + middle, ys.end());
+  const double x = xs[static_cast<std::size_t>(middle)], y = ys[static_cast<std::size_t>(middle)];
+  Box3 extent;
+  for (const Box3& box : boxes)
+    if (box.min.x >= x - max_distance && box.max.x <= x + max_distance &&
+        box.min.y >= y - max_distance && box.max.y <= y + max_distance)
+      extent.add(box);
+  return extent;
+}
+
+std::vector<SrsUse> interpret_srs(const FileScan& scan, const Crs& assumed, CrsBook& book) {
+  std::vector<SrsUse> uses(scan.facts.srs_names.size());
+  for (std::size_t i = 0; i < uses.size(); ++i) {
+    SrsUse& use = uses[i];
+    const std::string& name = scan.facts.srs_names[i];
+    auto parsed = name.empty() ? Result<Crs>(assumed) : parse_crs(name);
+    if (!parsed) {
+      use.problem = parsed.error().message;
+      continue;
+    }
+    use.crs = *parsed;
+    std::optional<CrsFacts> facts;
+    if (use.crs.known()) {
+      const auto& described = book.facts(use.crs);
+      if (!described) {
+        use.problem = described.error().message;
+        continue;
+      }
+      facts = *described;
+    }
+
+    std::vector<Box3> boxes;
+    for (const ScannedBuilding& building : scan.buildings)
+      if (building.srs == i && !building.extent.is_empty()) boxes.push_back(building.extent);
+    const bool geographic = facts && facts->geographic;
+    use.extent = robust_extent(boxes, geographic ? kAstray_deg : kAstray_m);
+    if (!facts) continue;
+
+    use.swap_axes = geographic && facts->north_first;
+    const Box3 seen = !use.extent.is_empty()           ? use.extent
+                      : i == scan.facts.declared_srs ? scan.facts.declared_extent
+                                                       : Box3{};
+    if (!seen.is_empty()) {
+      const Point3 as_stored = centre_of(seen);
+      const Point3 swapped{as_stored.y, as_stored.x, as_stored.z};
+      const bool stated_fits =
+          plausible(use.crs, *facts, use.swap_axes ? swapped : as_stored, book);
+      if (!stated_fits && plausible(use.crs, *facts, use.swap_axes ? as_stored : swapped, book))
+        use.swap_axes = !use.swap_axes;
+    }
+    if (use.swap_axes && !use.extent.is_empty()) use.extent = with_axes_swapped(use.extent);
+  }
+  return uses;
+}
+
+std::vector<Point3> densified_ring(double min_x, double min_y, double max_x, double max_y) {
+  const std::array<Point3, 4> corners{
+      {{min_x, min_y, 0}, {max_x, min_y, 0}, {max_x, max_y, 0}, {min_x, max_y, 0}}};
+  std::vector<Point3> ring;
+  for (std::size_t side = 0; side < 4; ++side) {
+    const Point3 &a = corners[side], &b = corners[(side + 1) % 4];
+    for (int i = 0; i + 1 < kPointsPerSide; ++i) {
+      const double t = static_cast<double>(i) / (kPointsPerSide - 1);
+      ring.push_back({a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, 0});
+    }
+  }
+  return ring;
+}
+
+}  // namespace citymesh::source

@@ -1,0 +1,403 @@
+#include "core/source/plan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <unordered_set>
+#include <utility>
+
+namespace citymesh::source {
+namespace {
+
+Point3 floored(const Point3& point) {
+  return {std::floor(point.x), std::floor(point.y), std::floor(point.z)};
+}
+
+std::string spelt(const Crs& crs) { return crs.id.empty() ? "none stated" : crs.id; }
+
+template <class Texts>
+std::string joined(const Texts& texts) {
+  std::string all;
+  for (const std::string& text : texts) all += (all.empty() ? "" : ", ") + text;
+  return all;
+}
+
+bool overlap(const Box3& a, const Box3& b) {
+  return a.min.x <= b.max.x && a.max.x >= b.min.x && a.min.y <= b.max.y && a.max.y >= b.min.y;
+}
+
+class Planner {
+ public:
+  Planner(const std::vector<std::shared_ptr<const FileScan>>& scans, const BuildingQuery& query,
+          const Crs& assumed)
+      : query_(query) {
+    for (const auto& scan : scans)
+      plan_.files.push_back({scan, interpret_srs(*scan, assumed, book_),
+                             std::vector<bool>(scan->buildings.size(), false)});
+  }
+
+  Result<Plan> make() {
+    if (auto checked = check_query(); !checked) return checked.error();
+    if (auto found = find_working_crs(); !found) return found.error();
+    if (auto chosen = choose(); !chosen) return chosen.error();
+    if (auto agreed = agree_on_crs(); !agreed) return agreed.error();
+    if (auto placed = place_origin(); !placed) return placed.error();
+    describe();
+    return std::move(plan_);
+  }
+
+ private:
+  /// Where buildings of one source CRS are worked on.
+  struct Workplace {
+    Crs crs{};
+    std::optional<Error> problem{};
+  };
+
+  Result<void> check_query() {
+    if (query_.crs.known()) {
+      const auto& facts = book_.facts(query_.crs);
+      if (!facts) return facts.error();
+      if (facts->geographic || facts->horizontal_unit_m != 1.0)
+        return fail(ErrorCode::InvalidArgument,
+                    "crs '" + query_.crs.id + "' (" + facts->name +
+                        ") is no projected CRS in metres, which the working CRS must be");
+    }
+    if (!query_.bbox) return {};
+    const RequestBox& box = *query_.bbox;
+    for (const double value : {box.min_x, box.min_y, box.max_x, box.max_y})
+      if (!std::isfinite(value))
+        return fail(ErrorCode::InvalidArgument,
+                    "bbox has the value " + std::to_string(value) + ", expected finite numbers");
+    if (box.min_x > box.max_x || box.min_y > box.max_y)
+      return fail(ErrorCode::InvalidArgument,
+                  "bbox is empty: min_x " + std::to_string(box.min_x) + ", max_x " +
+                      std::to_string(box.max_x) + ", min_y " + std::to_string(box.min_y) +
+                      ", max_y " + std::to_string(box.max_y) +
+                      ", expected the minimum before the maximum");
+    if (box.z_range_m && !((*box.z_range_m)[0] <= (*box.z_range_m)[1]))
+      return fail(ErrorCode::InvalidArgument, "bbox is empty: its lowest z is above its highest");
+    if (box.crs.known() && !book_.facts(box.crs)) return book_.facts(box.crs).error();
+    return {};
+  }
+
+  // The declared extent of a file in its own CRS, x east; empty when it says nothing or something
+  // that the buildings contradict.
+  Box3 declared_extent(const Plan::File& file, std::uint32_t srs) const {
+    const DocumentFacts& facts = file.scan->facts;
+    const bool about_it = facts.declared_srs == srs || facts.declared_srs == 0;
+    if (!about_it || facts.declared_extent.is_empty()) return {};
+    const Box3 box = file.srs[srs].swap_axes ? with_axes_swapped(facts.declared_extent)
+                                             : facts.declared_extent;
+    return overlap(box, file.srs[srs].extent) ? box : Box3{};
+  }
+
+  Result<void> find_working_crs() {
+    std::map<std::string, Box3> extents;  // by source CRS
+    for (const Plan::File& file : plan_.files)
+      for (std::uint32_t s = 0; s < file.srs.size(); ++s) {
+        const SrsUse& use = file.srs[s];
+        if (!use.problem.empty() || use.extent.is_empty()) continue;
+        const Box3 declared = declared_extent(file, s);
+        extents[source_crs(use, query_).id].add(declared.is_empty() ? use.extent : declared);
+      }
+    for (const auto& [id, extent] : extents) {
+      const Crs source{id};
+      if (query_.crs.known()) {
+        workplaces_[id].crs = query_.crs;
+        continue;
+      }
+      const Point3 centre{(extent.min.x + extent.max.x) / 2, (extent.min.y + extent.max.y) / 2, 0};
+      auto working = working_crs(source, centre);
+      if (working)
+        workplaces_[id].crs = *working;
+      else
+        workplaces_[id].problem = working.error();
+    }
+    return {};
+  }
+
+  // The request's box in a working CRS.
+  Result<const Area*> area_in(const Crs& working) {
+    const auto known = areas_.find(working.id);
+    if (known != areas_.end()) return &known->second;
+    const RequestBox& box = *query_.bbox;
+    auto ring = densified_ring(box.min_x, box.min_y, box.max_x, box.max_y);
+    if (!box.crs.id.empty()) {
+      const auto& transformer = book_.transformer(box.crs, working);
+      if (!transformer) return transformer.error();
+      if (auto moved = transformer->apply(ring); !moved)
+        return fail(ErrorCode::InvalidArgument, "bbox: " + moved.error().message);
+    }
+    std::vector<Point2> flat;
+    for (const Point3& point : ring) flat.push_back({point.x, point.y});
+    return &areas_.emplace(working.id, Area(std::move(flat))).first->second;
+  }
+
+  Result<void> choose() {
+    const std::unordered_set<std::string> wanted(query_.object_ids.begin(),
+                                                 query_.object_ids.end());
+    std::unordered_set<std::string> found;
+    std::set<std::string> unplaced;  // files whose buildings a box cannot be compared with
+    bool placed_any = false;
+    for (Plan::File& file : plan_.files) {
+      const FileScan& scan = *file.scan;
+      for (std::size_t b = 0; b < scan.buildings.size(); ++b) {
+        const ScannedBuilding& building = scan.buildings[b];
+        if (!wanted.empty()) {
+          bool any = wanted.contains(building.gml_id);
+          if (any) found.insert(building.gml_id);
+          for (const std::string& part : building.part_ids)
+            if (wanted.contains(part)) {
+              found.insert(part);
+              any = true;
+            }
+          if (!any) continue;
+        }
+        if (query_.bbox) {
+          const SrsUse& use = file.srs[building.srs];
+          const auto place = workplaces_.find(source_crs(use, query_).id);
+          if (building.extent.is_empty() || !use.problem.empty() || place == workplaces_.end() ||
+              place->second.problem)
+            continue;
+          if (query_.bbox->crs.known() && !place->second.crs.known()) {
+            unplaced.insert(scan.path.filename().string());
+            continue;
+          }
+          placed_any = true;
+          auto inside = is_inside(scan, building, use, place->second.crs);
+          if (!inside) return inside.error();
+          if (!*inside) continue;
+        }
+        file.selected[b] = true;
+      }
+    }
+    if (!unplaced.empty()) {
+      const std::string text = joined(unplaced) +
+                               (unplaced.size() == 1 ? " states" : " state") +
+                               " no CRS that a bbox in " + query_.bbox->crs.id +
+                               " can be compared with";
+      if (!placed_any)
+        return fail(ErrorCode::InvalidArgument,
+                    text + ": name the CRS of the data with `crs`, for example crs=EPSG:25833");
+      plan_.selection.warnings.push_back(text + "; left out, name their CRS with `crs`");
+    }
+    for (const std::string& id : query_.object_ids)
+      if (!found.contains(id)) plan_.selection.missing_ids.push_back(id);
+    return {};
+  }
+
+  bool z_fits(const Box3& extent) const {
+    if (!query_.bbox->z_range_m) return true;
+    const auto [low, high] = *query_.bbox->z_range_m;
+    const double middle = (extent.min.z + extent.max.z) / 2;
+    switch (query_.bbox_rule) {
+      case BboxRule::Intersects:
+        return extent.min.z <= high && extent.max.z >= low;
+      case BboxRule::Centre:
+        return middle >= low && middle <= high;
+      case BboxRule::Within:
+        return extent.min.z >= low && extent.max.z <= high;
+    }
+    return false;
+  }
+
+  Result<bool> is_inside(const FileScan& scan, const ScannedBuilding& building, const SrsUse& use,
+                         const Crs& working) {
+    if (!z_fits(building.extent)) return false;
+    const auto area = area_in(working);
+    if (!area) return area.error();
+    const auto& transformer = book_.transformer(source_crs(use, query_), working);
+    if (!transformer) return transformer.error();
+
+    // The envelope first: it decides most buildings.
+    const Box3 box = use.swap_axes ? with_axes_swapped(building.extent) : building.extent;
+    std::array<Point3, 4> corners{{{box.min.x, box.min.y, 0},
+                                   {box.max.x, box.min.y, 0},
+                                   {box.max.x, box.max.y, 0},
+                                   {box.min.x, box.max.y, 0}}};
+    if (!transformer->apply(corners)) return false;
+    Box3 envelope;
+    for (const Point3& corner : corners) envelope.add(corner);
+    if (query_.bbox_rule == BboxRule::Centre)
+      return (*area)->contains({(envelope.min.x + envelope.max.x) / 2,
+                                (envelope.min.y + envelope.max.y) / 2});
+    // A transformed side bends by far less than this.
+    const double margin = 0.01 * std::max(envelope.max.x - envelope.min.x,
+                                          envelope.max.y - envelope.min.y);
+    if (!(*area)->box_touches({envelope.min.x - margin, envelope.min.y - margin},
+                              {envelope.max.x + margin, envelope.max.y + margin}))
+      return false;
+    return footprint_inside(scan, building, use, *transformer, **area);
+  }
+
+  bool footprint_inside(const FileScan& scan, const ScannedBuilding& building, const SrsUse& use,
+                        const Transformer& transformer, const Area& area) {
+    const std::span rings(scan.footprints.rings.data() + building.first_ring, building.ring_count);
+    const bool within = query_.bbox_rule == BboxRule::Within;
+    bool any = false;
+    for (std::size_t r = 0; r < rings.size();) {
+      std::size_t end = r + 1;
+      while (end < rings.size() && !rings[end].exterior) ++end;
+      std::vector<Footprints::Ring> polygon;
+      points_.clear();
+      for (std::size_t i = r; i < end; ++i) {
+        polygon.push_back(
+            {static_cast<std::uint32_t>(points_.size()), rings[i].count, rings[i].exterior});
+        for (std::uint32_t p = 0; p < rings[i].count; ++p) {
+          const Point2& point = scan.footprints.points[rings[i].first + p];
+          points_.push_back(use.swap_axes ? Point3{point.y, point.x, 0}
+                                          : Point3{point.x, point.y, 0});
+        }
+      }
+      r = end;
+      if (!transformer.apply(points_)) continue;
+      std::vector<Point2> flat;
+      flat.reserve(points_.size());
+      for (const Point3& point : points_) flat.push_back({point.x, point.y});
+      if (within) {
+        for (const Point2& point : flat)
+          if (!area.contains(point)) return false;
+        any = true;
+      } else if (area.touches(flat, polygon)) {
+        return true;
+      }
+    }
+    return within && any;
+  }
+
+  Result<void> agree_on_crs() {
+    std::map<std::string, std::string> found;  // working CRS -> source CRS
+    std::optional<Error> problem;
+    for (const Plan::File& file : plan_.files)
+      for (std::size_t b = 0; b < file.selected.size(); ++b) {
+        const ScannedBuilding& building = file.scan->buildings[b];
+        const SrsUse& use = file.srs[building.srs];
+        if (!file.selected[b] || building.extent.is_empty() || !use.problem.empty()) continue;
+        const auto place = workplaces_.find(source_crs(use, query_).id);
+        if (place == workplaces_.end()) continue;
+        if (place->second.problem && !problem) problem = place->second.problem;
+        found.emplace(place->second.crs.id, spelt(use.crs));
+      }
+    if (problem) return *problem;
+    if (found.size() > 1) {
+      std::vector<std::string> names;
+      for (const auto& [working, source] : found) names.push_back(source);
+      return fail(ErrorCode::FailedPrecondition,
+                  "the selected buildings are in different CRSs (" + joined(names) +
+                      "): name the one to work in with `crs`");
+    }
+    if (found.size() == 1)
+      plan_.selection.crs = Crs{found.begin()->first};
+    else if (query_.crs.known())
+      plan_.selection.crs = query_.crs;
+    else if (!workplaces_.empty())
+      plan_.selection.crs = workplaces_.begin()->second.crs;
+    return {};
+  }
+
+  Result<void> place_origin() {
+    const Crs& working = plan_.selection.crs;
+    if (query_.bbox) {
+      const RequestBox& box = *query_.bbox;
+      std::array<Point3, 1> centre{
+          {{(box.min_x + box.max_x) / 2, (box.min_y + box.max_y) / 2, 0}}};
+      if (!box.crs.id.empty() && working.known()) {
+        const auto& transformer = book_.transformer(box.crs, working);
+        if (!transformer) return transformer.error();
+        if (auto moved = transformer->apply(centre); !moved)
+          return fail(ErrorCode::InvalidArgument, "bbox: " + moved.error().message);
+      }
+      plan_.selection.origin = floored({centre[0].x, centre[0].y, 0});
+      return {};
+    }
+
+    Box3 whole;
+    for (const Plan::File& file : plan_.files)
+      for (std::uint32_t s = 0; s < file.srs.size(); ++s) {
+        const SrsUse& use = file.srs[s];
+        if (!use.problem.empty() || use.extent.is_empty()) continue;
+        const auto place = workplaces_.find(source_crs(use, query_).id);
+        if (place == workplaces_.end() || place->second.crs != working) continue;
+        const Box3 declared = declared_extent(file, s);
+        const Box3& box = declared.is_empty() ? use.extent : declared;
+        const auto& transformer = book_.transformer(source_crs(use, query_), working);
+        if (!transformer) return transformer.error();
+        auto ring = densified_ring(box.min.x, box.min.y, box.max.x, box.max.y);
+        if (!transformer->apply(ring)) continue;
+        for (Point3& point : ring) {
+          point.z = box.min.z;
+          whole.add(point);
+        }
+      }
+    if (!whole.is_empty()) plan_.selection.origin = floored(whole.min);
+    return {};
+  }
+
+  void describe() {
+    Selection& selection = plan_.selection;
+    std::set<std::string> unstated, assumed;
+    for (const Plan::File& file : plan_.files) {
+      const FileScan& scan = *file.scan;
+      const std::string name = scan.path.filename().string();
+      InputReport report{.file = name,
+                         .format = scan.facts.format,
+                         .state = scan.facts.failure.empty() ? "read" : "failed",
+                         .message = scan.facts.failure};
+      report.buildings = scan.buildings.size();
+      std::set<std::string> crs_names, problems;
+      for (const ScannedBuilding& building : scan.buildings) {
+        if (building.extent.is_empty()) continue;
+        const SrsUse& use = file.srs[building.srs];
+        if (!use.problem.empty()) {
+          problems.insert(use.problem);
+          continue;
+        }
+        if (!use.crs.id.empty()) crs_names.insert(use.crs.id);
+        if (!use.crs.known()) (query_.crs.known() ? assumed : unstated).insert(name);
+      }
+      report.crs = joined(crs_names);
+      for (const std::string& problem : problems) selection.warnings.push_back(name + ": " + problem);
+      if (scan.facts.skipped_objects > 0)
+        selection.warnings.push_back(name + ": " + std::to_string(scan.facts.skipped_objects) +
+                                     " objects of extension types were not read");
+      selection.inputs.push_back(std::move(report));
+
+      for (std::size_t b = 0; b < file.selected.size(); ++b) {
+        if (!file.selected[b]) continue;
+        ++selection.buildings;
+        const ScannedBuilding& building = scan.buildings[b];
+        selection.object_ids.push_back(building.gml_id);
+        selection.object_ids.insert(selection.object_ids.end(), building.part_ids.begin(),
+                                    building.part_ids.end());
+      }
+    }
+    if (!unstated.empty())
+      selection.warnings.push_back(joined(unstated) + ": no CRS stated, metres assumed");
+    if (!assumed.empty())
+      selection.warnings.push_back(joined(assumed) + ": no CRS stated, taken as " + query_.crs.id);
+  }
+
+  const BuildingQuery& query_;
+  CrsBook book_{};
+  Plan plan_{};
+  std::map<std::string, Workplace> workplaces_{};  ///< by source CRS
+  std::map<std::string, Area> areas_{};            ///< by working CRS
+  std::vector<Point3> points_{};
+};
+
+}  // namespace
+
+Crs source_crs(const SrsUse& use, const BuildingQuery& query) {
+  return use.crs.known() || !query.crs.known() ? use.crs : query.crs;
+}
+
+Result<Plan> make_plan(const std::vector<std::shared_ptr<const FileScan>>& scans,
+                       const BuildingQuery& query, const Crs& assumed_crs) {
+  return Planner(scans, query, assumed_crs).make();
+}
+
+}  // namespace citymesh::source
