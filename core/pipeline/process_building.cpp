@@ -50,6 +50,7 @@ Issue issue_of(const GateFailure& failure, std::string_view format) {
 Result<WeldedBody> read_back(std::string_view format, std::string_view text) {
   ParsedBody all;
   auto parsed = parse_text(format, text, [&](ParsedBody&& body) -> Result<void> {
+    all.float32 = body.float32;
     const auto first = static_cast<std::uint32_t>(all.points.size());
     all.points.insert(all.points.end(), body.points.begin(), body.points.end());
     for (const Triangle& t : body.triangles)
