@@ -112,14 +112,16 @@ class Manifest {
     for (const Body& body : building.bodies) {
       const std::uint64_t fingerprint = signature(body.mesh.points, body.mesh.triangles);
       bodies_.emplace(body.name, fingerprint);
+      fingerprints_.insert(fingerprint);
       sum_ += fingerprint;
     }
   }
 
   /// Re-reads a finished file once. A body is fit when the file holds exactly the triangles that
   /// passed the gates.
-  Result<void> check(std::string_view format, const std::filesystem::path& file, bool named,
+  Result<void> check(std::string_view format, const std::filesystem::path& file, bool by_type,
                      const RunContext& context) const {
+    const bool named = !by_type && format != "cityjson";  // CityJSON knows bodies by gml_id
     std::uint64_t sum = 0, count = 0;
     auto read = parse_file(format, file, [&](ParsedBody&& parsed) -> Result<void> {
       if (context.stopped()) return cancelled();
@@ -130,9 +132,10 @@ class Manifest {
       const std::uint64_t fingerprint = signature(body->points, body->triangles);
       sum += fingerprint;
       ++count;
-      if (!named) return {};
       const auto expected = bodies_.find(parsed.name);
-      if (expected == bodies_.end() || expected->second != fingerprint)
+      const bool fit = named ? expected != bodies_.end() && expected->second == fingerprint
+                             : by_type || fingerprints_.contains(fingerprint);
+      if (!fit)
         return fail(
             ErrorCode::DataLoss,
             fmt::format(
@@ -141,7 +144,7 @@ class Manifest {
       return {};
     });
     if (!read) return read.error();
-    if (sum != sum_ || (named && count != bodies_.size()))
+    if (sum != sum_ || (!by_type && count != bodies_.size()))
       return fail(ErrorCode::DataLoss,
                   fmt::format("{}: holds {} bodies, {} were delivered", file.filename().string(),
                               count, bodies_.size()));
@@ -155,6 +158,7 @@ class Manifest {
   }
 
   std::unordered_map<std::string, std::uint64_t> bodies_;
+  std::unordered_set<std::uint64_t> fingerprints_;
   std::uint64_t sum_ = 0;
 };
 
@@ -295,9 +299,9 @@ class Run {
     start = context_.now();
     context_.report({"gates", done_, done_});
     for (const OpenFormat& open : formats_) {
-      const bool named = !(open.format->key == "stl" && inputs_.patches == Patches::ByType);
+      const bool by_type = open.format->key == "stl" && inputs_.patches == Patches::ByType;
       auto checked =
-          manifest_.check(open.format->key, folder_ / open.format->file_name, named, context_);
+          manifest_.check(open.format->key, folder_ / open.format->file_name, by_type, context_);
       if (!checked) return checked.error();
     }
     time("gates", start);

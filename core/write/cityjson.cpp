@@ -228,7 +228,7 @@ void append_building(Growing& growing, const BuildingBodies& building) {
 
 class CityJsonWriter final : public BodyWriter {
  public:
-  CityJsonWriter(OutputFile file, Spool vertices, Scene scene)
+  CityJsonWriter(AtomicFile file, Spool vertices, Scene scene)
       : file_(std::move(file)), vertices_(std::move(vertices)), scene_(std::move(scene)) {}
 
   Result<std::string> encode(const BuildingBodies& building) const override {
@@ -307,7 +307,7 @@ class CityJsonWriter final : public BodyWriter {
     append_grid(json, steps(scene_.origin.z, p.z));
   }
 
-  OutputFile file_;
+  AtomicFile file_;
   Spool vertices_;
   Scene scene_;
   Growing growing_{};
@@ -317,7 +317,7 @@ class CityJsonWriter final : public BodyWriter {
 
 WriterResult open_cityjson(const std::filesystem::path& folder, const Format& format,
                            const Scene& scene) {
-  auto file = OutputFile::create(folder / format.file_name);
+  auto file = AtomicFile::create(folder / format.file_name);
   if (!file) return file.error();
   auto vertices = Spool::create(folder, std::string(format.file_name) + " (vertices)");
   if (!vertices) return vertices.error();

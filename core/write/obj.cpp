@@ -7,7 +7,7 @@ namespace {
 
 class ObjWriter final : public BodyWriter {
  public:
-  ObjWriter(OutputFile file, std::string header)
+  ObjWriter(AtomicFile file, std::string header)
       : file_(std::move(file)), header_(std::move(header)) {}
 
   Result<std::string> encode(const BuildingBodies& building) const override {
@@ -61,7 +61,7 @@ class ObjWriter final : public BodyWriter {
     }
   }
 
-  OutputFile file_;
+  AtomicFile file_;
   std::string header_;
   std::string buffer_{};
   std::uint64_t next_vertex_ = 1;  // OBJ counts from 1 through the whole file
@@ -79,7 +79,7 @@ WriterResult open_obj(const std::filesystem::path& folder, const Format& format,
   header += "\n# axes " + std::string(kAxes);
   header += "\n# absolute coordinates = origin + v\n";
 
-  auto file = OutputFile::create(folder / format.file_name);
+  auto file = AtomicFile::create(folder / format.file_name);
   if (!file) return file.error();
   if (auto written = file->write(header); !written) return written.error();
   return WriterResult(std::make_unique<ObjWriter>(std::move(*file), std::move(header)));

@@ -89,36 +89,36 @@ Result<void> Spool::flush() {
   return written;
 }
 
-OutputFile::OutputFile(Descriptor fd, std::filesystem::path path)
+AtomicFile::AtomicFile(Descriptor fd, std::filesystem::path path)
     : fd_(std::move(fd)), path_(std::move(path)), temporary_(part_of(path_)) {}
 
-OutputFile::OutputFile(OutputFile&& other) noexcept
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
     : fd_(std::move(other.fd_)),
       path_(std::move(other.path_)),
       temporary_(std::exchange(other.temporary_, {})),
       buffer_(std::move(other.buffer_)) {}
 
-OutputFile::~OutputFile() {
+AtomicFile::~AtomicFile() {
   if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
-Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
+Result<AtomicFile> AtomicFile::create(const std::filesystem::path& path) {
   const int fd = ::open(part_of(path).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (fd < 0) return disk_error("create", path.filename().string(), errno);
-  return OutputFile(Descriptor(fd), path);
+  return AtomicFile(Descriptor(fd), path);
 }
 
-Result<void> OutputFile::write(std::string_view bytes) {
+Result<void> AtomicFile::write(std::string_view bytes) {
   return buffered_write(fd_.get(), buffer_, bytes, path_.filename().native());
 }
 
-Result<void> OutputFile::flush() {
+Result<void> AtomicFile::flush() {
   auto written = write_all(fd_.get(), buffer_, path_.filename().native());
   buffer_.clear();
   return written;
 }
 
-Result<void> OutputFile::append(Spool& spool) {
+Result<void> AtomicFile::append(Spool& spool) {
   if (auto flushed = spool.flush(); !flushed) return flushed;
   std::vector<char> chunk(kBufferBytes);
   for (std::uint64_t offset = 0; offset < spool.size_;) {
@@ -133,7 +133,7 @@ Result<void> OutputFile::append(Spool& spool) {
   return {};
 }
 
-Result<void> OutputFile::overwrite(std::uint64_t offset, std::string_view bytes) {
+Result<void> AtomicFile::overwrite(std::uint64_t offset, std::string_view bytes) {
   if (auto flushed = flush(); !flushed) return flushed;
   while (!bytes.empty()) {
     const ssize_t written =
@@ -148,7 +148,7 @@ Result<void> OutputFile::overwrite(std::uint64_t offset, std::string_view bytes)
   return {};
 }
 
-Result<void> OutputFile::commit() {
+Result<void> AtomicFile::commit() {
   if (auto flushed = flush(); !flushed) return flushed;
   if (::close(fd_.release()) != 0)  // network file systems report a full disk here
     return disk_error("write", path_.filename().native(), errno);

@@ -36,7 +36,7 @@ class Spool {
   std::uint64_t size() const { return size_; }
 
  private:
-  friend class OutputFile;
+  friend class AtomicFile;
   Spool(Descriptor fd, std::string purpose) : fd_(std::move(fd)), purpose_(std::move(purpose)) {}
   Result<void> flush();
 
@@ -48,12 +48,12 @@ class Spool {
 
 /// A file that appears under its name only when it is complete. Errors of all functions:
 /// Unavailable with the file's name and the system's reason.
-class OutputFile {
+class AtomicFile {
  public:
-  static Result<OutputFile> create(const std::filesystem::path& path);
-  OutputFile(OutputFile&& other) noexcept;
-  OutputFile& operator=(OutputFile&&) = delete;
-  ~OutputFile();  ///< removes what was not committed
+  static Result<AtomicFile> create(const std::filesystem::path& path);
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile& operator=(AtomicFile&&) = delete;
+  ~AtomicFile();  ///< removes what was not committed
 
   Result<void> write(std::string_view bytes);
   Result<void> append(Spool& spool);
@@ -62,7 +62,7 @@ class OutputFile {
   Result<void> commit();
 
  private:
-  OutputFile(Descriptor fd, std::filesystem::path path);
+  AtomicFile(Descriptor fd, std::filesystem::path path);
   Result<void> flush();
 
   Descriptor fd_;

@@ -50,7 +50,7 @@ class FileReportWriter final : public ReportWriter {
  private:
   Result<void> write_file(std::string_view name, std::string_view head, Spool* middle,
                           std::string_view tail) {
-    auto file = OutputFile::create(folder_ / name);
+    auto file = AtomicFile::create(folder_ / name);
     if (!file) return file.error();
     if (auto r = file->write(head); !r) return r;
     if (middle != nullptr)

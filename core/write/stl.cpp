@@ -52,7 +52,7 @@ void append_solid(std::string& text, std::string_view name, std::string_view fac
 /// One solid per body and surface type.
 class StlWriter final : public BodyWriter {
  public:
-  explicit StlWriter(OutputFile file) : file_(std::move(file)) {}
+  explicit StlWriter(AtomicFile file) : file_(std::move(file)) {}
 
   Result<std::string> encode(const BuildingBodies& building) const override {
     std::string text;
@@ -91,7 +91,7 @@ class StlWriter final : public BodyWriter {
     }
   }
 
-  OutputFile file_;
+  AtomicFile file_;
   std::string buffer_{};
   bool empty_ = true;
 };
@@ -100,7 +100,7 @@ class StlWriter final : public BodyWriter {
 /// the end.
 class StlByTypeWriter final : public BodyWriter {
  public:
-  StlByTypeWriter(OutputFile file, std::filesystem::path folder, std::string_view file_name)
+  StlByTypeWriter(AtomicFile file, std::filesystem::path folder, std::string_view file_name)
       : file_(std::move(file)), folder_(std::move(folder)), file_name_(file_name) {}
 
   Result<std::string> encode(const BuildingBodies& building) const override {
@@ -156,7 +156,7 @@ class StlByTypeWriter final : public BodyWriter {
     return facets;
   }
 
-  OutputFile file_;
+  AtomicFile file_;
   std::filesystem::path folder_;
   std::string file_name_;
   std::array<std::optional<Spool>, kSurfaceTypeCount> spools_{};
@@ -166,7 +166,7 @@ class StlByTypeWriter final : public BodyWriter {
 
 WriterResult open_stl(const std::filesystem::path& folder, const Format& format,
                       const Scene& scene) {
-  auto file = OutputFile::create(folder / format.file_name);
+  auto file = AtomicFile::create(folder / format.file_name);
   if (!file) return file.error();
   if (scene.patches == Patches::ByType)
     return WriterResult(

@@ -107,8 +107,8 @@ std::string sidecar_tail(std::uint64_t triangles) {
 }
 
 std::string stl_header(const Scene& scene) {
-  std::string header = generator() + " crs " + crs_text(scene) + " origin " + origin_text(scene) +
-                       " unit metre axes x east y north z up";
+  std::string header = generator() + ", " + crs_text(scene) + ", origin " + origin_text(scene) +
+                       ", metre, x east y north z up";
   header.resize(kHeaderBytes, ' ');
   return header;
 }
@@ -172,7 +172,7 @@ std::string type_entry_head(std::size_t type, std::uint64_t first, std::uint64_t
 
 class BinaryStlWriter final : public BodyWriter {
  public:
-  BinaryStlWriter(OutputFile file, OutputFile sidecar, Scene scene, std::filesystem::path folder,
+  BinaryStlWriter(AtomicFile file, AtomicFile sidecar, Scene scene, std::filesystem::path folder,
                   const Format& format)
       : file_(std::move(file)),
         sidecar_(std::move(sidecar)),
@@ -272,8 +272,8 @@ class BinaryStlWriter final : public BodyWriter {
     return {};
   }
 
-  OutputFile file_;
-  OutputFile sidecar_;
+  AtomicFile file_;
+  AtomicFile sidecar_;
   Scene scene_;
   std::filesystem::path folder_;
   Format format_;
@@ -285,9 +285,9 @@ class BinaryStlWriter final : public BodyWriter {
 
 WriterResult open_stl_binary(const std::filesystem::path& folder, const Format& format,
                              const Scene& scene) {
-  auto file = OutputFile::create(folder / format.file_name);
+  auto file = AtomicFile::create(folder / format.file_name);
   if (!file) return file.error();
-  auto sidecar = OutputFile::create(folder / format.sidecar);
+  auto sidecar = AtomicFile::create(folder / format.sidecar);
   if (!sidecar) return sidecar.error();
   std::string head = stl_header(scene);
   append_u32(head, 0);  // replaced when the file is complete

@@ -94,7 +94,7 @@ std::string patch_name(const Body& body, SurfaceType type) {
 }
 
 Result<void> write_run_json(const std::filesystem::path& folder, const RunTimings& timings) {
-  auto file = OutputFile::create(folder / "run.json");
+  auto file = AtomicFile::create(folder / "run.json");
   if (!file) return file.error();
   std::string text = "{\n  \"stages_s\": {";
   for (std::size_t i = 0; i < timings.stages_s.size(); ++i) {
