@@ -156,8 +156,9 @@ std::string where(json::document& document, const simdjson::padded_string& text)
 Result<void> parse(const simdjson::padded_string& text, const ParsedBodySink& sink) {
   json::parser parser;
   json::document document;
+  if (const auto error = parser.iterate(text).get(document); error != simdjson::SUCCESS)
+    return fail(ErrorCode::DataLoss, simdjson::error_message(error));
   try {
-    document = parser.iterate(text);
     if (std::string_view(document["type"].get_string()) != "CityJSON" ||
         std::string_view(document["version"].get_string()) != "2.0")
       return fail(ErrorCode::DataLoss, "expected a CityJSON document of version 2.0");

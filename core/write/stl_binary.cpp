@@ -108,7 +108,7 @@ std::string sidecar_tail(std::uint64_t triangles) {
 
 std::string stl_header(const Scene& scene) {
   std::string header = generator() + ", " + crs_text(scene) + ", origin " + origin_text(scene) +
-                       ", metre, x east y north z up";
+                       ", metre, east north up";
   header.resize(kHeaderBytes, ' ');
   return header;
 }

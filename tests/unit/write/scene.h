@@ -1,0 +1,190 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/citymodel/mesh.h"
+
+namespace citymesh::test {
+
+inline GridPoint grid(double x, double y, double z) {
+  return {std::llround(x * kGridStepsPerMetre), std::llround(y * kGridStepsPerMetre),
+          std::llround(z * kGridStepsPerMetre)};
+}
+
+/// A mesh built face by face from polygons that are fans of triangles.
+class MeshBuilder {
+ public:
+  std::uint32_t point(double x, double y, double z) {
+    mesh_.points.push_back(grid(x, y, z));
+    return static_cast<std::uint32_t>(mesh_.points.size() - 1);
+  }
+  void face(SurfaceType type, const std::string& id, std::vector<std::uint32_t> corners) {
+    mesh_.surface_ids.push_back(id);
+    more(type, corners);
+  }
+  /// One more convex piece of the last face.
+  void more(SurfaceType type, std::vector<std::uint32_t> corners) {
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+      mesh_.triangles.push_back({corners[0], corners[i], corners[i + 1]});
+      mesh_.surface_types.push_back(type);
+      mesh_.source_surfaces.push_back(static_cast<std::uint32_t>(mesh_.surface_ids.size() - 1));
+    }
+  }
+  TriangleMesh mesh() { return std::move(mesh_); }
+
+ private:
+  TriangleMesh mesh_{};
+};
+
+/// Turns about (cx, cy) so that scenes are not all parallel to the axes.
+struct Placement {
+  double x = 0, y = 0, z = 0, turn_cos = 1, turn_sin = 0;
+  std::array<double, 3> operator()(double px, double py, double pz) const {
+    return {x + px * turn_cos - py * turn_sin, y + px * turn_sin + py * turn_cos, z + pz};
+  }
+};
+
+/// A block of `outline` (counter-clockwise, convex) from 0 to `height`.
+inline TriangleMesh block(const std::vector<std::array<double, 2>>& outline, double height,
+                          const Placement& at = {}) {
+  MeshBuilder builder;
+  std::vector<std::uint32_t> low, high;
+  for (const auto& [x, y] : outline) {
+    const auto p = at(x, y, 0), q = at(x, y, height);
+    low.push_back(builder.point(p[0], p[1], p[2]));
+    high.push_back(builder.point(q[0], q[1], q[2]));
+  }
+  builder.face(SurfaceType::GroundSurface, "ground", {low.rbegin(), low.rend()});
+  const std::size_t n = outline.size();
+  for (std::size_t i = 0; i < n; ++i)
+    builder.face(SurfaceType::WallSurface, "wall_" + std::to_string(i),
+                 {low[i], low[(i + 1) % n], high[(i + 1) % n], high[i]});
+  builder.face(SurfaceType::RoofSurface, "roof", high);
+  return builder.mesh();
+}
+
+inline TriangleMesh box(double width, double depth, double height, const Placement& at = {}) {
+  return block({{0, 0}, {width, 0}, {width, depth}, {0, depth}}, height, at);
+}
+
+/// Gabled roof with the ridge along x.
+inline TriangleMesh house(double width, double depth, double eaves, double ridge,
+                          const Placement& at = {}) {
+  MeshBuilder b;
+  const auto point = [&](double x, double y, double z) {
+    const auto p = at(x, y, z);
+    return b.point(p[0], p[1], p[2]);
+  };
+  const auto a0 = point(0, 0, 0), a1 = point(width, 0, 0), a2 = point(width, depth, 0),
+             a3 = point(0, depth, 0), e0 = point(0, 0, eaves), e1 = point(width, 0, eaves),
+             e2 = point(width, depth, eaves), e3 = point(0, depth, eaves),
+             r0 = point(0, depth / 2, ridge), r1 = point(width, depth / 2, ridge);
+  b.face(SurfaceType::GroundSurface, "ground", {a0, a3, a2, a1});
+  b.face(SurfaceType::WallSurface, "south", {a0, a1, e1, e0});
+  b.face(SurfaceType::WallSurface, "east", {a1, a2, e2, r1, e1});
+  b.face(SurfaceType::WallSurface, "north", {a2, a3, e3, e2});
+  b.face(SurfaceType::WallSurface, "west", {a3, a0, e0, r0, e3});
+  b.face(SurfaceType::RoofSurface, "roof_south", {e0, e1, r1, r0});
+  b.face(SurfaceType::RoofSurface, "roof_north", {e2, e3, r0, r1});
+  return b.mesh();
+}
+
+/// A flat building around a courtyard.
+inline TriangleMesh courtyard(double width, double depth, double wing, double height,
+                              const Placement& at = {}) {
+  MeshBuilder b;
+  const std::array<std::array<double, 2>, 4> outer{
+      {{0, 0}, {width, 0}, {width, depth}, {0, depth}}};
+  const std::array<std::array<double, 2>, 4> inner{
+      {{wing, wing}, {width - wing, wing}, {width - wing, depth - wing}, {wing, depth - wing}}};
+  std::array<std::array<std::uint32_t, 4>, 4> p{};  // outer low, outer high, inner low, inner high
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto& flat = k < 2 ? outer[i] : inner[i];
+      const auto q = at(flat[0], flat[1], k % 2 == 0 ? 0 : height);
+      p[k][i] = b.point(q[0], q[1], q[2]);
+    }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t j = (i + 1) % 4;
+    const auto add = [&](SurfaceType type, const char* id, std::vector<std::uint32_t> corners) {
+      if (i == 0) {
+        b.face(type, id, std::move(corners));
+      } else {
+        b.face(type, id + std::to_string(i), std::move(corners));
+      }
+    };
+    add(SurfaceType::GroundSurface, "ground", {p[0][i], p[2][i], p[2][j], p[0][j]});
+    add(SurfaceType::WallSurface, "wall", {p[0][i], p[0][j], p[1][j], p[1][i]});
+    add(SurfaceType::WallSurface, "yard", {p[2][j], p[2][i], p[3][i], p[3][j]});
+    add(SurfaceType::RoofSurface, "roof", {p[1][i], p[1][j], p[3][j], p[3][i]});
+  }
+  return b.mesh();
+}
+
+inline BuildingBodies building(const std::string& name, TriangleMesh mesh,
+                               const std::string& rung = "as_is") {
+  BuildingBodies bodies;
+  bodies.gml_id = name;
+  bodies.rung = rung;
+  bodies.bodies.push_back({.name = name, .gml_id = name, .lod = "2", .mesh = std::move(mesh)});
+  return bodies;
+}
+
+/// Streets of gabled and flat houses, perimeter blocks with something in the yard, a few towers.
+inline std::vector<BuildingBodies> synthetic_city(int streets = 6, int blocks = 5) {
+  std::vector<BuildingBodies> city;
+  std::uint32_t state = 12345;  // a fixed sequence (Lehmer)
+  const auto random = [&state](double low, double high) {
+    state = static_cast<std::uint32_t>(static_cast<std::uint64_t>(state) * 48271 % 2147483647);
+    return low + (high - low) * state / 2147483647.0;
+  };
+  const std::array<std::string, 5> rungs{"as_is", "healed", "rebuilt_2_5d", "wrapped",
+                                         "lod1_block"};
+  const auto rung = [&] {
+    const double r = random(0, 1);
+    return rungs[r < 0.62 ? 0 : r < 0.86 ? 1 : r < 0.93 ? 2 : r < 0.96 ? 3 : 4];
+  };
+  const double turn_cos = 0.970295726, turn_sin = 0.241921896;  // 14 degrees
+  const auto add = [&](TriangleMesh mesh) {
+    city.push_back(building("b_" + std::to_string(city.size() + 1), std::move(mesh), rung()));
+  };
+  for (int street = 0; street < streets; ++street)
+    for (int column = 0; column < blocks; ++column) {
+      const double left = column * 82.0, low = street * 62.0;
+      const auto place = [&](double x, double y) {
+        const double px = left + x, py = low + y;
+        return Placement{px * turn_cos - py * turn_sin, px * turn_sin + py * turn_cos, 0.01 * px,
+                         turn_cos, turn_sin};
+      };
+      switch ((street + 2 * column) % 4) {
+        case 0:
+          add(courtyard(66, 46, 11, random(13, 19), place(0, 0)));
+          add(box(14, 10, random(4, 8), place(24, 17)));
+          if (column % 2 == 0) add(box(7, 7, 34, place(44, 18)));
+          break;
+        case 1:
+          for (int i = 0; i < 6; ++i) {
+            add(house(10.5, 9, random(5, 7), random(9, 11), place(i * 11.2, 2)));
+            add(house(10.5, 9, random(5, 7), random(9, 11), place(i * 11.2, 30)));
+          }
+          break;
+        case 2:
+          for (int i = 0; i < 4; ++i) {
+            add(box(15.5, 13, random(9, 21), place(i * 16, 1)));
+            add(box(15.5, 13, random(9, 21), place(i * 16, 31)));
+          }
+          break;
+        default:
+          add(block({{0, 0}, {40, 0}, {46, 9}, {46, 20}, {40, 29}, {0, 29}}, random(8, 14),
+                    place(4, 6)));
+          add(box(13, 13, random(38, 62), place(52, 10)));
+          add(house(20, 8, 4, 7.5, place(8, 38)));
+      }
+    }
+  return city;
+}
+
+}  // namespace citymesh::test
