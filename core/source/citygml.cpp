@@ -105,12 +105,12 @@ struct Frame {
   std::uint8_t dimension = 3;  ///< of coordinates, inherited
   std::int8_t lod = -1;
   bool footprint = false;
-  bool complex = false;           ///< an attribute with children: not kept
-  std::uint32_t srs = 0;          ///< inherited
-  std::int32_t object = -1;       ///< whose geometry this is, inherited
-  std::int32_t surface = -1;      ///< inherited
-  std::int32_t node = -1;         ///< of the geometry tree
-  std::size_t owner = 0;          ///< Envelope: the frame that it describes
+  bool complex = false;       ///< an attribute with children: not kept
+  std::uint32_t srs = 0;      ///< inherited
+  std::int32_t object = -1;   ///< whose geometry this is, inherited
+  std::int32_t surface = -1;  ///< inherited
+  std::int32_t node = -1;     ///< of the geometry tree
+  std::size_t owner = 0;      ///< Envelope: the frame that it describes
 };
 
 class CityGmlParser {
@@ -159,10 +159,10 @@ class CityGmlParser {
     if (facts_.failure.empty()) facts_.failure = "line " + std::to_string(line()) + ": " + reason;
     halt();
   }
-  void halt() {
-    stopped_ = true;
-    if (context_) xmlStopParser(context_);
-  }
+  /// From here on events are ignored and reading fails, so the parser ends by itself at the end of
+  /// its buffer. xmlStopParser from inside a callback leaves libxml2 2.9 without an input and
+  /// crashes it.
+  void halt() { stopped_ = true; }
   int line() const { return context_ && context_->input ? context_->input->line : 0; }
 
   const ElementName& meaning(const xmlChar* name, const xmlChar* uri);
@@ -235,7 +235,7 @@ class CityGmlParser {
   unsigned skipped_ = 0;  ///< open elements of a skipped subtree
   bool capturing_ = false;
   std::string text_{};
-  std::string name_{};          ///< of the attribute that is read
+  std::string name_{};  ///< of the attribute that is read
   std::string generic_value_{};
   std::uint64_t event_bytes_ = 0;
 
@@ -263,7 +263,8 @@ int CityGmlParser::read_bytes(void* context, char* buffer, int size) {
       return;
     }
     // A comment, a name or an attribute that does not end would be held in memory as a whole.
-    if (parser.bytes_.bytes_read() > parser.event_bytes_ + parser.options_.limits.max_building_bytes) {
+    if (parser.bytes_.bytes_read() >
+        parser.event_bytes_ + parser.options_.limits.max_building_bytes) {
       parser.fail_document("a single piece of markup has more than max_building_bytes = " +
                            std::to_string(parser.options_.limits.max_building_bytes) + " bytes");
       return;
@@ -343,8 +344,8 @@ Result<void> CityGmlParser::parse() {
   handler.serror = &ignore_error;
 
   xmlInitParser();
-  context_ = xmlCreateIOParserCtxt(&handler, this, &read_bytes, nullptr, this,
-                                   XML_CHAR_ENCODING_NONE);
+  context_ =
+      xmlCreateIOParserCtxt(&handler, this, &read_bytes, nullptr, this, XML_CHAR_ENCODING_NONE);
   if (!context_) {
     if (error_) return *error_;
     if (facts_.failure.empty()) facts_.failure = "the file cannot be read as XML";
@@ -505,9 +506,9 @@ void CityGmlParser::start_root(const ElementName& element, std::string_view name
   const bool model = element.tag == Tag::CityModel && major >= '1' && major <= '3';
   if (!model && element.tag != Tag::FeatureCollection) {
     facts_.not_a_city_model = element.tag != Tag::CityModel;
-    return fail_document("the root element is '" + std::string(name) + "' of namespace '" +
-                         std::string(uri) +
-                         "', expected CityModel of CityGML 1.0, 2.0 or 3.0 or a feature collection");
+    return fail_document(
+        "the root element is '" + std::string(name) + "' of namespace '" + std::string(uri) +
+        "', expected CityModel of CityGML 1.0, 2.0 or 3.0 or a feature collection");
   }
   facts_.format = model ? std::string("CityGML ") + major + ".0" : "GML feature collection";
   push(Ctx::Model, element);
@@ -655,8 +656,8 @@ bool CityGmlParser::start_geometry(const ElementName& element, const XmlAttribut
   Frame& frame = push(Ctx::Geometry, element);
   inherit(frame, attributes);
   const auto parent = outer == Ctx::GeometryMember ? frame.node : GeometryTree::kNone;
-  frame.node = tree_.add(kind, parent, outer == Ctx::GeometryMember ? frame.role
-                                                                    : GeometryTree::Role::Member,
+  frame.node = tree_.add(kind, parent,
+                         outer == Ctx::GeometryMember ? frame.role : GeometryTree::Role::Member,
                          attributes.id);
   if (attributes.orientation == "-") tree_.set_reversed(frame.node);
   if (outer == Ctx::GeometryProperty)
@@ -698,8 +699,7 @@ void CityGmlParser::start_geometry_member(const ElementName& element,
   }
   Frame& frame = push(polygon ? Ctx::RingProperty : Ctx::GeometryMember, element);
   frame.role = role;
-  if (!polygon && !attributes.href.empty())
-    tree_.add_reference(attributes.href, frame.node, role);
+  if (!polygon && !attributes.href.empty()) tree_.add_reference(attributes.href, frame.node, role);
 }
 
 void CityGmlParser::start_generic(const ElementName& element, const XmlAttributes& attributes) {
@@ -882,12 +882,12 @@ void CityGmlParser::end_feature(const Frame& frame) {
       feature_.objects[part].gml_id = numbered_id(building.gml_id, part);
 
   if (too_large_) {
-    building.issues.push_back(
-        {issue_code::kReadLimitExceeded,
-         "the building has more than max_building_bytes = " +
-             std::to_string(options_.limits.max_building_bytes) +
-             " bytes or max_points_per_building = " +
-             std::to_string(options_.limits.max_points_per_building) + " points"});
+    building.issues.push_back({issue_code::kReadLimitExceeded,
+                               "the building has more than max_building_bytes = " +
+                                   std::to_string(options_.limits.max_building_bytes) +
+                                   " bytes or max_points_per_building = " +
+                                   std::to_string(options_.limits.max_points_per_building) +
+                                   " points"});
   } else {
     tree_.resolve(feature_, options_, facts_.unresolved);
   }
@@ -900,8 +900,7 @@ void CityGmlParser::check_size() {
     too_large_ = true;
 }
 
-void CityGmlParser::add_attribute(std::int32_t object, std::string_view key,
-                                  AttributeValue value) {
+void CityGmlParser::add_attribute(std::int32_t object, std::string_view key, AttributeValue value) {
   if (object < 0) return;
   Attributes& attributes = feature_.objects[static_cast<std::size_t>(object)].attributes;
   const auto found = std::find_if(attributes.begin(), attributes.end(),
