@@ -47,6 +47,18 @@ void append_px(std::string& out, double px) { append_tenths(out, std::llround(10
 
 using Outline = std::vector<std::array<std::int64_t, 2>>;
 
+/// Smaller than half a pixel in both directions.
+bool is_speck(const Outline& outline) {
+  constexpr std::int64_t kSpeck_tenths = 5;
+  auto low = outline[0], high = outline[0];
+  for (const auto& at : outline)
+    for (std::size_t i = 0; i < 2; ++i) {
+      low[i] = std::min(low[i], at[i]);
+      high[i] = std::max(high[i], at[i]);
+    }
+  return high[0] - low[0] < kSpeck_tenths && high[1] - low[1] < kSpeck_tenths;
+}
+
 /// Page outline of a ring without repeated points; empty when nothing is left to see.
 template <class Ring>
 Outline outline_of(const Page& page, const Ring& ring) {
@@ -56,7 +68,7 @@ Outline outline_of(const Page& page, const Ring& ring) {
     if (outline.empty() || outline.back() != at) outline.push_back(at);
   }
   while (outline.size() > 1 && outline.front() == outline.back()) outline.pop_back();
-  if (outline.size() < 3) outline.clear();
+  if (outline.size() < 3 || is_speck(outline)) outline.clear();
   return outline;
 }
 
@@ -319,7 +331,13 @@ void append_ground(std::string& svg, const Drawing& drawing) {
 
 /// What the sun sees, thrown on the ground beneath each body.
 void append_shadows(std::string& svg, const Drawing& drawing) {
-  svg += "<g fill=\"#39435c\" opacity=\".34\" filter=\"url(#citymesh-soft)\">\n";
+  svg += "<clipPath id=\"citymesh-plate\"><path d=\"";
+  append_outline(svg, outline_of(drawing.page, drawing.plate));
+  // The stroke hides the seams between the shadows of neighbouring faces.
+  svg +=
+      "\"/></clipPath>\n<g clip-path=\"url(#citymesh-plate)\"><g fill=\"#39435c\" "
+      "stroke=\"#39435c\" stroke-width=\".8\" opacity=\".34\" "
+      "filter=\"url(#citymesh-soft)\">\n";
   for (const DrawnFace& face : drawing.faces) {
     if (dot(face.normal, kSun) <= 1e-6) continue;
     std::string path;
@@ -336,7 +354,7 @@ void append_shadows(std::string& svg, const Drawing& drawing) {
     if (path.empty()) continue;
     svg += "<path d=\"" + path + "\"/>\n";
   }
-  svg += "</g>\n";
+  svg += "</g></g>\n";
 }
 
 /// Those edges of a triangle that are edges of the whole face.
