@@ -59,6 +59,7 @@ struct OutputFile {
 
 struct RunOutcome {
   RunReport report{};
+  RunTimings timings{};  ///< as in run.json
   std::vector<OutputFile>
       files{};           ///< all files written, the contract's always-written ones included
   bool complete = true;  ///< false: objects were dropped or an input could not be read

@@ -325,7 +325,7 @@ class Run {
                     [](const InputReport& input) { return input.state != "failed"; });
     if (auto finished = report_->finish(outcome.report); !finished) return finished.error();
 
-    RunTimings timings;
+    RunTimings& timings = outcome.timings;
     timings.stages_s.assign(stages_s_.begin(), stages_s_.end());
     timings.total_s = context_.now() - start;
     timings.threads = context_.threads;

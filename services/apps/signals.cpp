@@ -29,7 +29,9 @@ StopOnSignal::StopOnSignal() {
   // Blocked in every thread that is made from here on: only the listener takes them.
   const auto signals = stop_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves is an error of that write only
+  // A reader that leaves and a file beyond its limit are errors of that write only.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
   listener_ = std::jthread([stop = stop_](const std::stop_token& ended) mutable {
     const auto wanted = stop_signals();
     while (!ended.stop_requested()) {

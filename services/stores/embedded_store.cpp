@@ -490,7 +490,9 @@ Result<std::optional<Claim>> EmbeddedStore::claim_now(const std::string& worker,
           job->finished = now;
         } else if (deaths >= std::int64_t{options_.max_attempts}) {
           job->state = JobState::Failed;
-          job->message = fmt::format("the worker died {} times while running this job", deaths);
+          job->message =
+              deaths == 1 ? "the worker died once while running this job"
+                          : fmt::format("the worker died {} times while running this job", deaths);
           job->error = fail(ErrorCode::Internal, job->message);
           job->finished = now;
         } else {

@@ -288,6 +288,8 @@ std::string_view WorkerPool::Impl::finish(const Run& run, Result<RunOutcome> out
   if (!files) return close(run, JobState::Failed, files.error().message, files.error(), {});
   if (auto committed = results.commit(claim.job_id, claim.attempt); !committed)
     return close(run, JobState::Failed, committed.error().message, committed.error(), {});
+  for (const auto& [stage, seconds] : outcome->timings.stages_s)
+    metrics.stage_took(outcome->report.process, stage, seconds);
   const auto& counts = outcome->report.counts;
   metrics.buildings("delivered", counts.delivered);
   metrics.buildings("merged", counts.merged);

@@ -1,0 +1,239 @@
+#include <gmock/gmock.h>
+#include <grpcpp/grpcpp.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <thread>
+
+#include "citymesh/v1/jobs.grpc.pb.h"
+#include "services/jobs/job_manager.h"
+#include "services/rpc/server.h"
+#include "services/stores/embedded_store.h"
+#include "services/stores/folder_results.h"
+#include "services/telemetry/metrics.h"
+#include "tests/support/temp_folder.h"
+
+namespace citymesh {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr TimeMs kLongLease = 60'000;
+
+/// The real server on a loopback port over real stores. No worker: a test moves its jobs itself.
+class RpcServerTest : public testing::Test {
+ protected:
+  RpcServerTest()
+      : store_(*EmbeddedStore::open(folder_ / "jobs.sqlite")),
+        results_(*FolderResultStore::open(folder_ / "results")),
+        jobs_(*store_, *store_, *results_, {.max_open_jobs = 10, .dismiss_wait_ms = 50}),
+        server_(jobs_, metrics_, {.port = 0, .max_message_bytes = 64 << 10, .max_watches = 2}) {
+    const auto port = server_.start();
+    EXPECT_TRUE(port) << port.error().message;
+    channel_ = grpc::CreateChannel("127.0.0.1:" + std::to_string(port ? *port : 0),
+                                   grpc::InsecureChannelCredentials());
+    stub_ = v1::Jobs::NewStub(channel_);
+  }
+
+  std::pair<grpc::Status, v1::Job> submit(const std::string& process, const std::string& inputs) {
+    v1::SubmitRequest request;
+    request.set_process(process);
+    request.set_inputs_json(inputs);
+    grpc::ClientContext context;
+    v1::Job job;
+    auto status = stub_->Submit(&context, request, &job);
+    return {status, job};
+  }
+
+  std::string submitted() {
+    const auto [status, job] = submit("export-for-simulation", "{}");
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return job.job_id();
+  }
+
+  v1::GetRequest id_of(const std::string& id) {
+    v1::GetRequest request;
+    request.set_job_id(id);
+    return request;
+  }
+
+  Claim started() {
+    const auto claim = store_->claim("worker", kLongLease, 0);
+    EXPECT_TRUE(claim && *claim);
+    EXPECT_TRUE(store_->update((*claim)->job_id, (*claim)->attempt,
+                               [](Job& job) { job.state = JobState::Running; }));
+    return **claim;
+  }
+
+  void succeed(const Claim& claim, const std::string& mesh) {
+    const auto folder = results_->stage(claim.job_id, claim.attempt);
+    ASSERT_TRUE(folder);
+    std::ofstream(*folder / "model.obj", std::ios::binary) << mesh;
+    ASSERT_TRUE(results_->commit(claim.job_id, claim.attempt));
+    ASSERT_TRUE(store_->update(claim.job_id, claim.attempt, [&](Job& job) {
+      job.state = JobState::Successful;
+      job.results = {{"obj", "model.obj", "model/obj", mesh.size()}};
+    }));
+    ASSERT_TRUE(store_->done(claim));
+  }
+
+  std::pair<grpc::Status, std::string> fetch(const std::string& id, const std::string& output) {
+    v1::FetchResultRequest request;
+    request.set_job_id(id);
+    request.set_output(output);
+    grpc::ClientContext context;
+    const auto reader = stub_->FetchResult(&context, request);
+    std::string bytes;
+    v1::Chunk chunk;
+    while (reader->Read(&chunk)) {
+      EXPECT_LE(chunk.data().size(), 256u * 1024);
+      bytes += chunk.data();
+    }
+    return {reader->Finish(), bytes};
+  }
+
+  TempFolder folder_;
+  std::unique_ptr<EmbeddedStore> store_;
+  std::unique_ptr<FolderResultStore> results_;
+  Metrics metrics_;
+  JobManager jobs_;
+  RpcServer server_;
+  std::shared_ptr<grpc::Channel> channel_;
+  std::unique_ptr<v1::Jobs::Stub> stub_;
+};
+
+TEST_F(RpcServerTest, ASubmittedJobCanBeAskedFor) {
+  const auto id = submitted();
+  grpc::ClientContext context;
+  v1::Job job;
+  const auto status = stub_->Get(&context, id_of(id), &job);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(job.job_id(), id);
+  EXPECT_EQ(job.state(), v1::ACCEPTED);
+  EXPECT_EQ(job.process(), "export-for-simulation");
+  EXPECT_GT(job.created_ms(), 0);
+}
+
+TEST_F(RpcServerTest, ErrorsKeepTheirCodeAndMessage) {
+  const auto unknown = submit("fly", "{}").first;
+  EXPECT_EQ(unknown.error_code(), grpc::StatusCode::NOT_FOUND);
+  EXPECT_THAT(unknown.error_message(), HasSubstr("export-for-simulation"));
+  EXPECT_EQ(submit("export-for-simulation", "{\"lod\":").first.error_code(),
+            grpc::StatusCode::INVALID_ARGUMENT);
+  grpc::ClientContext context;
+  v1::Job job;
+  EXPECT_EQ(stub_->Get(&context, id_of("none"), &job).error_code(), grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(fetch(submitted(), "obj").first.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+  for (int i = 1; i < 10; ++i) submitted();
+  EXPECT_EQ(submit("export-for-simulation", "{}").first.error_code(),
+            grpc::StatusCode::RESOURCE_EXHAUSTED);
+}
+
+TEST_F(RpcServerTest, AnOversizeMessageIsRefusedAndTheNextCallWorks) {
+  const auto status = submit("export-for-simulation", std::string(1 << 20, ' ')).first;
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  submitted();
+}
+
+TEST_F(RpcServerTest, WatchGivesThePresentStateEveryChangeAndEndsWithTheFinalState) {
+  const auto id = submitted();
+  grpc::ClientContext context;
+  const auto reader = stub_->Watch(&context, id_of(id));
+  v1::Job job;
+  ASSERT_TRUE(reader->Read(&job));
+  EXPECT_EQ(job.state(), v1::ACCEPTED);
+
+  const auto claim = started();
+  ASSERT_TRUE(store_->set_progress(id, claim.attempt, {"heal", 1, 2}, "heal: 1 of 2", 50));
+  while (job.percent() != 50) ASSERT_TRUE(reader->Read(&job));
+  EXPECT_EQ(job.stage(), "heal");
+  EXPECT_EQ(job.done(), 1u);
+  succeed(claim, "v 0 0 0");
+  while (job.state() != v1::SUCCESSFUL) ASSERT_TRUE(reader->Read(&job));
+  EXPECT_EQ(job.results(0).file_name(), "model.obj");
+  EXPECT_FALSE(reader->Read(&job));
+  EXPECT_TRUE(reader->Finish().ok());
+}
+
+TEST_F(RpcServerTest, AClientThatLeavesFreesItsWatch) {
+  const auto id = submitted();
+  for (int i = 0; i < 10; ++i) {  // the limit is two at the same time
+    grpc::Status status;
+    do {
+      grpc::ClientContext context;
+      const auto reader = stub_->Watch(&context, id_of(id));
+      v1::Job job;
+      const auto read = reader->Read(&job);
+      context.TryCancel();
+      status = reader->Finish();
+      if (read) EXPECT_EQ(status.error_code(), grpc::StatusCode::CANCELLED);
+    } while (status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED);
+  }
+}
+
+TEST_F(RpcServerTest, MoreWatchesThanTheLimitAreRefused) {
+  const auto id = submitted();
+  std::vector<std::unique_ptr<grpc::ClientContext>> contexts;
+  std::vector<std::unique_ptr<grpc::ClientReader<v1::Job>>> readers;
+  v1::Job job;
+  for (int i = 0; i < 2; ++i) {
+    contexts.push_back(std::make_unique<grpc::ClientContext>());
+    readers.push_back(stub_->Watch(contexts.back().get(), id_of(id)));
+    ASSERT_TRUE(readers.back()->Read(&job));
+  }
+  grpc::ClientContext context;
+  const auto refused = stub_->Watch(&context, id_of(id));
+  EXPECT_FALSE(refused->Read(&job));
+  EXPECT_EQ(refused->Finish().error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  server_.stop();  // ends the open ones
+  for (auto& reader : readers) {
+    while (reader->Read(&job)) {
+    }
+    EXPECT_FALSE(reader->Finish().ok());
+  }
+}
+
+TEST_F(RpcServerTest, DismissEndsAQueuedJob) {
+  const auto id = submitted();
+  grpc::ClientContext context;
+  v1::Job job;
+  ASSERT_TRUE(stub_->Dismiss(&context, id_of(id), &job).ok());
+  EXPECT_EQ(job.state(), v1::DISMISSED);
+}
+
+TEST_F(RpcServerTest, ResultsComeInChunksByOutputOrFileName) {
+  const auto id = submitted();
+  std::string mesh;
+  for (int i = 0; mesh.size() < 700'000; ++i) mesh += "v " + std::to_string(i) + " 0 0\n";
+  succeed(started(), mesh);
+  for (const auto* name : {"obj", "model.obj"}) {
+    const auto [status, bytes] = fetch(id, name);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    EXPECT_TRUE(bytes == mesh) << name;
+  }
+  for (const auto* name : {"", "../model.obj", "report.json"}) {
+    const auto status = fetch(id, name).first;
+    EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND) << name;
+    EXPECT_THAT(status.error_message(), HasSubstr("model.obj"));
+  }
+}
+
+TEST_F(RpcServerTest, CallsAreCounted) {
+  submitted();
+  EXPECT_THAT(metrics_.text(),
+              HasSubstr("citymesh_grpc_requests_total{code=\"0\",method=\"Submit\"} 1"));
+}
+
+TEST_F(RpcServerTest, ATakenPortIsAnError) {
+  RpcServer first(jobs_, metrics_, {.port = 0});
+  const auto port = first.start();
+  ASSERT_TRUE(port);
+  RpcServer second(jobs_, metrics_, {.port = *port});
+  const auto taken = second.start();
+  ASSERT_FALSE(taken);
+  EXPECT_EQ(taken.error().code, ErrorCode::Unavailable);
+  EXPECT_THAT(taken.error().message, HasSubstr(std::to_string(*port)));
+}
+
+}  // namespace
+}  // namespace citymesh
