@@ -18,9 +18,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Result pages are ours, but hold text from input files: no scripts, nothing from elsewhere.
-constexpr std::string_view kResultPolicy =
-    "default-src 'none'; style-src 'unsafe-inline'; img-src 'self' data:; sandbox";
+/// Results hold text from input files: a page of them gets an origin of its own, from which it
+/// reaches nothing. The report's table is sorted and searched by a script inside the page.
+constexpr std::string_view kPagePolicy =
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; "
+    "sandbox allow-scripts allow-downloads";
+constexpr std::string_view kFilePolicy =
+    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox";
 
 FilePiece piece_of(JobManager& jobs, const Job& job, const ResultFile& file) {
   return {file.bytes, [&jobs, id = job.id, name = file.file_name](std::uint64_t offset,
@@ -51,11 +55,14 @@ struct Wanted {
   Transmission transmission;
 };
 
-/// What was asked for, or every output as a link. An output that wrote no file is left out.
+/// What was asked for, or every output of the process as a link. An output that wrote no file is
+/// left out.
 std::vector<Wanted> wanted_outputs(const Job& job) {
   auto outputs = job.spec.outputs;
   if (outputs.empty())
-    for (const auto& file : job.results) outputs[file.output] = Transmission::Reference;
+    if (const auto* process = find_process(job.spec.process))
+      for (const auto& output : process->outputs)
+        outputs[std::string(output.id)] = Transmission::Reference;
   std::vector<Wanted> wanted;
   for (const auto& [output, transmission] : outputs)
     if (const auto* file = find_result(job, output)) wanted.push_back({output, file, transmission});
@@ -172,7 +179,8 @@ Response file_response(JobManager& jobs, const Job& job, const ResultFile& file)
   Response response;
   response.headers.set("Content-Type", file.media_type);
   response.headers.set("Content-Disposition", content_disposition(file));
-  response.headers.set("Content-Security-Policy", std::string(kResultPolicy));
+  response.headers.set("Content-Security-Policy",
+                       std::string(file.media_type == "text/html" ? kPagePolicy : kFilePolicy));
   response.body.emplace_back(piece_of(jobs, job, file));
   return response;
 }

@@ -236,6 +236,8 @@ TEST_F(RestApi, ResultsOfAPlainRequestAreADocumentOfLinks) {
   EXPECT_EQ(results["obj"]["type"], "model/obj");
   EXPECT_EQ(results["report"]["href"],
             "http://citymesh.test:8080/jobs/" + id + "/results/report.json");
+  for (const auto& [output, link] : results.items())
+    EXPECT_THAT((std::vector<std::string>{"report", "obj", "stl_binary"}), Contains(output));
 }
 
 TEST_F(RestApi, RawResultOfOneValueIsTheFileItself) {
@@ -299,13 +301,15 @@ TEST_F(RestApi, DocumentGivesLinksForValuesThatAreTooLargeToInline) {
   EXPECT_TRUE(results["report"].contains("value")) << "JSON is streamed, whatever its size";
 }
 
-TEST_F(RestApi, ResultFilesAreServedByOutputAndByNameWithAPolicyAgainstScripts) {
+TEST_F(RestApi, ResultFilesAreServedByOutputAndByNameCutOffFromTheRestOfTheSite) {
   const auto id = finished(kBox);
   EXPECT_EQ(text(get("/jobs/" + id + "/results/report")), R"({"counts":{"requested":12}})");
   EXPECT_EQ(text(get("/jobs/" + id + "/results/run.json")), R"({"threads":1})");
   const auto page = get("/jobs/" + id + "/results/report.html");
   EXPECT_EQ(page.headers.get("Content-Type"), "text/html");
-  EXPECT_THAT(page.headers.get("Content-Security-Policy"), HasSubstr("default-src 'none'"));
+  EXPECT_THAT(page.headers.get("Content-Security-Policy"),
+              ::testing::AllOf(HasSubstr("default-src 'none'"), HasSubstr("sandbox"),
+                               Not(HasSubstr("allow-same-origin"))));
   EXPECT_EQ(page.headers.get("X-Content-Type-Options"), "nosniff");
 }
 

@@ -107,12 +107,12 @@ class JobService {
 
   static std::vector<File> export_files() {
     return {{"report", "report.json", "application/json", R"({"counts":{"requested":12}})"},
-            {"report", "report.html", "text/html", "<!DOCTYPE html><title>Report</title>"},
-            {"report", "picture.svg", "image/svg+xml", "<svg/>"},
-            {"report", "run.json", "application/json", R"({"threads":1})"},
+            {"report.html", "report.html", "text/html", "<!DOCTYPE html><title>Report</title>"},
+            {"picture.svg", "picture.svg", "image/svg+xml", "<svg/>"},
+            {"run.json", "run.json", "application/json", R"({"threads":1})"},
             {"obj", "model.obj", "model/obj", "o b_1\nv 0 0 0\n"},
             {"stl_binary", "model_binary.stl", "model/stl", std::string("\0\1\2\3", 4)},
-            {"stl_binary", "model_binary.patches.json", "application/json", "[]"}};
+            {"model_binary.patches.json", "model_binary.patches.json", "application/json", "[]"}};
   }
 
  private:
