@@ -68,8 +68,7 @@ std::optional<double> number_attribute(const Attributes& attributes, std::string
   for (const auto& [key, value] : attributes) {
     if (key != name) continue;
     if (const auto* number = std::get_if<double>(&value)) return *number;
-    if (const auto* number = std::get_if<std::int64_t>(&value))
-      return static_cast<double>(*number);
+    if (const auto* number = std::get_if<std::int64_t>(&value)) return static_cast<double>(*number);
     if (const auto* text = std::get_if<std::string>(&value))
       return whole_number_text<double>(trimmed(*text));
     return std::nullopt;

@@ -36,18 +36,20 @@ constexpr std::array kAdvHorizontal{
 
 // AdV names, vertical part. Both DE_DHHN92_NH and DE_DHN92_NH occur in files.
 constexpr std::array kAdvVertical{
-    NamedCode{"DE_DHHN12_NN", 7699},   NamedCode{"DE_DHHN12_NOH", 7699},
-    NamedCode{"DE_DHHN85_NN", 5784},   NamedCode{"DE_DHHN85_NOH", 5784},
-    NamedCode{"DE_DHHN92_NH", 5783},   NamedCode{"DE_DHHN92_NHN", 5783},
-    NamedCode{"DE_DHN92_NH", 5783},    NamedCode{"DE_DHHN2016_NH", 7837},
+    NamedCode{"DE_DHHN12_NN", 7699},    NamedCode{"DE_DHHN12_NOH", 7699},
+    NamedCode{"DE_DHHN85_NN", 5784},    NamedCode{"DE_DHHN85_NOH", 5784},
+    NamedCode{"DE_DHHN92_NH", 5783},    NamedCode{"DE_DHHN92_NHN", 5783},
+    NamedCode{"DE_DHN92_NH", 5783},     NamedCode{"DE_DHHN2016_NH", 7837},
     NamedCode{"DE_DHHN2016_NHN", 7837}, NamedCode{"DE_SNN76_NH", 5785},
     NamedCode{"DE_SNN76_NHN", 5785},
 };
 
 // Names without a code that occur as srsName.
 constexpr std::array kPlainNames{
-    NamedCode{"CH1903", 21781},       NamedCode{"CH1903_LV03", 21781},
-    NamedCode{"CH1903+", 2056},       NamedCode{"CH1903+_LV95", 2056},
+    NamedCode{"CH1903", 21781},
+    NamedCode{"CH1903_LV03", 21781},
+    NamedCode{"CH1903+", 2056},
+    NamedCode{"CH1903+_LV95", 2056},
     NamedCode{"DHDN_Soldner_Berlin", 3068},
 };
 
@@ -117,8 +119,8 @@ std::string id_of(std::string_view name) {
 
   if (const auto code = code_of(kPlainNames, name)) return "EPSG:" + std::to_string(*code);
   if (is_code(name)) return "EPSG:" + std::string(name);
-  if (name.front() == '#' || small.find("engineering") != std::string::npos ||
-      starts("local") || starts("urn:ogc:def:crs:local"))
+  if (name.front() == '#' || small.find("engineering") != std::string::npos || starts("local") ||
+      starts("urn:ogc:def:crs:local"))
     return "LOCAL";
   if (small == "crs84" || small == "ogc:crs84" || small == "crs:84" || small == "crs84h" ||
       small == "ogc:crs84h")
@@ -269,14 +271,10 @@ struct UtmSeries {
 };
 
 constexpr std::array kUtmSeries{
-    UtmSeries{"JGD2011", 6688 - 51, 51, 55, false},
-    UtmSeries{"JGD2000", 3097 - 51, 51, 55, false},
-    UtmSeries{"ETRS89", 25800, 28, 38, false},
-    UtmSeries{"WGS 84", 32600, 1, 60, false},
-    UtmSeries{"WGS 84", 32700, 1, 60, true},
-    UtmSeries{"NAD83", 26900, 1, 23, false},
-    UtmSeries{"GDA2020", 7846 - 46, 46, 59, true},
-    UtmSeries{"GDA94", 28300, 46, 59, true},
+    UtmSeries{"JGD2011", 6688 - 51, 51, 55, false}, UtmSeries{"JGD2000", 3097 - 51, 51, 55, false},
+    UtmSeries{"ETRS89", 25800, 28, 38, false},      UtmSeries{"WGS 84", 32600, 1, 60, false},
+    UtmSeries{"WGS 84", 32700, 1, 60, true},        UtmSeries{"NAD83", 26900, 1, 23, false},
+    UtmSeries{"GDA2020", 7846 - 46, 46, 59, true},  UtmSeries{"GDA94", 28300, 46, 59, true},
 };
 
 }  // namespace
@@ -360,8 +358,8 @@ Result<Transformer> Transformer::create(const Crs& from, const Crs& to) {
                                      PJ_COMP_EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS))
     return Transformer(std::move(impl));
 
-  const Pj raw(proj_create_crs_to_crs_from_pj(context, source.get(), target.get(), nullptr,
-                                              nullptr));
+  const Pj raw(
+      proj_create_crs_to_crs_from_pj(context, source.get(), target.get(), nullptr, nullptr));
   if (raw) impl->operation.reset(proj_normalize_for_visualization(context, raw.get()));
   if (!impl->operation)
     return fail(ErrorCode::InvalidArgument,

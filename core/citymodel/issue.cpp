@@ -71,9 +71,9 @@ static_assert(std::is_sorted(kIssueNames.begin(), kIssueNames.end(),
 }  // namespace
 
 std::string_view issue_name(int code) {
-  const auto found = std::lower_bound(
-      kIssueNames.begin(), kIssueNames.end(), code,
-      [](const IssueName& entry, int wanted) { return entry.code < wanted; });
+  const auto found =
+      std::lower_bound(kIssueNames.begin(), kIssueNames.end(), code,
+                       [](const IssueName& entry, int wanted) { return entry.code < wanted; });
   if (found == kIssueNames.end() || found->code != code) return "UNKNOWN_ISSUE";
   return found->text;
 }

@@ -35,10 +35,10 @@ class BuildingMaker {
 
   std::vector<SrsPlacement> srs_;
   Point3 origin_;
-  std::vector<std::uint32_t> table_{};      ///< hash table of points, open addressing
+  std::vector<std::uint32_t> table_{};       ///< hash table of points, open addressing
   std::vector<std::uint32_t> same_point_{};  ///< first point of the feature at the same place
-  std::vector<std::uint32_t> seen_in_{};    ///< by point: the geometry that has it
-  std::vector<std::uint32_t> index_in_{};   ///< by point: its index there
+  std::vector<std::uint32_t> seen_in_{};     ///< by point: the geometry that has it
+  std::vector<std::uint32_t> index_in_{};    ///< by point: its index there
   std::uint32_t geometry_ = 0;
 };
 

@@ -65,8 +65,8 @@ Result<std::size_t> ByteReader::read(char* buffer, std::size_t size) {
                                          (code == Z_ERRNO ? std::strerror(errno) : reason));
   bytes_read_ += static_cast<std::uint64_t>(count);
   if (bytes_read_ > max_bytes_)
-    return fail(ErrorCode::ResourceExhausted, "the file has more than max_file_bytes = " +
-                                                  std::to_string(max_bytes_) + " bytes");
+    return fail(ErrorCode::ResourceExhausted,
+                "the file has more than max_file_bytes = " + std::to_string(max_bytes_) + " bytes");
   return static_cast<std::size_t>(count);
 }
 
@@ -81,9 +81,9 @@ Result<RandomReader> RandomReader::open(const std::filesystem::path& path,
     if (S_ISDIR(status.st_mode)) return open_error(path, EISDIR);
     plain.size_ = static_cast<std::uint64_t>(status.st_size);
     if (plain.size_ > max_bytes)
-      return fail(ErrorCode::ResourceExhausted, "the file has " + std::to_string(plain.size_) +
-                                                    " bytes, more than max_file_bytes = " +
-                                                    std::to_string(max_bytes));
+      return fail(ErrorCode::ResourceExhausted,
+                  "the file has " + std::to_string(plain.size_) +
+                      " bytes, more than max_file_bytes = " + std::to_string(max_bytes));
     return plain;
   }
 

@@ -165,8 +165,10 @@ NsMeaning namespace_of(std::string_view uri) {
   if (uri.empty()) return {Ns::None};
   if (const auto rest = after(uri, "http://www.opengis.net/citygml/"); !rest.empty()) {
     const auto slash = rest.rfind('/');
-    const auto module = slash == std::string_view::npos ? std::string_view{} : rest.substr(0, slash);
-    const char major = rest[slash == std::string_view::npos ? 0 : std::min(slash + 1, rest.size() - 1)];
+    const auto module =
+        slash == std::string_view::npos ? std::string_view{} : rest.substr(0, slash);
+    const char major =
+        rest[slash == std::string_view::npos ? 0 : std::min(slash + 1, rest.size() - 1)];
     if (module.empty() || module == "profiles/base") return {Ns::Core, major};
     if (module == "building") return {Ns::Building, major};
     if (module == "construction") return {Ns::Construction, major};

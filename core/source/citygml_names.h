@@ -35,20 +35,20 @@ enum class Tag : std::uint8_t {
   MemberProperty,
   Building,
   BuildingPart,
-  EnvelopeProperty,   ///< gml:boundedBy
-  BoundaryProperty,   ///< bldg:boundedBy, core:boundary
-  PartProperty,       ///< consistsOfBuildingPart, buildingPart
-  Installation,       ///< outer installations
-  Interior,           ///< rooms, furniture, interior installations, storeys
-  OpeningProperty,    ///< opening, fillingSurface
-  BoundarySurface,    ///< `surface` tells which
-  GeometryProperty,   ///< lodNSolid, lodNMultiSurface, lod0FootPrint …
-  UnusedGeometry,     ///< curves, terrain intersection, implicit geometry
-  GenericProperty,    ///< genericAttribute of 3.0
-  GenericText,        ///< stringAttribute, dateAttribute, uriAttribute
-  GenericWhole,       ///< intAttribute
-  GenericNumber,      ///< doubleAttribute, measureAttribute
-  GenericSet,         ///< genericAttributeSet
+  EnvelopeProperty,  ///< gml:boundedBy
+  BoundaryProperty,  ///< bldg:boundedBy, core:boundary
+  PartProperty,      ///< consistsOfBuildingPart, buildingPart
+  Installation,      ///< outer installations
+  Interior,          ///< rooms, furniture, interior installations, storeys
+  OpeningProperty,   ///< opening, fillingSurface
+  BoundarySurface,   ///< `surface` tells which
+  GeometryProperty,  ///< lodNSolid, lodNMultiSurface, lod0FootPrint …
+  UnusedGeometry,    ///< curves, terrain intersection, implicit geometry
+  GenericProperty,   ///< genericAttribute of 3.0
+  GenericText,       ///< stringAttribute, dateAttribute, uriAttribute
+  GenericWhole,      ///< intAttribute
+  GenericNumber,     ///< doubleAttribute, measureAttribute
+  GenericSet,        ///< genericAttributeSet
   Name,
   Value,
   HeightProperty,  ///< con:height

@@ -127,7 +127,8 @@ bool GeometryTree::borrow(std::string_view id, bool reversed, Walk& walk,
         found != walk.options.shared->by_id.end()) {
       for (const PolygonUse& use : found->second) {
         const auto [entry, is_new] = walk.borrowed.try_emplace(use.polygon, 0u);
-        if (is_new) entry->second = copy_polygon(walk.options.shared->pool, use.polygon, walk.feature);
+        if (is_new)
+          entry->second = copy_polygon(walk.options.shared->pool, use.polygon, walk.feature);
         if (!walk.count_points(walk.feature.polygons[entry->second])) return true;
         uses.push_back({entry->second, use.reversed != reversed});
       }
@@ -149,9 +150,8 @@ void GeometryTree::surfaces_below(NodeId id, bool reversed, unsigned depth, Walk
                                   std::vector<PolygonUse>& uses) {
   if (!walk.step()) return;
   if (depth > walk.options.limits.max_depth) {
-    walk.report(issue_code::kReadLimitExceeded,
-                "references nested deeper than max_depth = " +
-                    std::to_string(walk.options.limits.max_depth));
+    walk.report(issue_code::kReadLimitExceeded, "references nested deeper than max_depth = " +
+                                                    std::to_string(walk.options.limits.max_depth));
     return;
   }
   Node& node = nodes_[index(id)];
@@ -188,9 +188,8 @@ void GeometryTree::solids_below(NodeId id, bool reversed, unsigned depth, Walk& 
                                 RawShape& shape) {
   if (!walk.step()) return;
   if (depth > walk.options.limits.max_depth) {
-    walk.report(issue_code::kReadLimitExceeded,
-                "references nested deeper than max_depth = " +
-                    std::to_string(walk.options.limits.max_depth));
+    walk.report(issue_code::kReadLimitExceeded, "references nested deeper than max_depth = " +
+                                                    std::to_string(walk.options.limits.max_depth));
     return;
   }
   Node& node = nodes_[index(id)];

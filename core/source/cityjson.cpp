@@ -69,7 +69,8 @@ std::string read_type_and_version(std::optional<std::string_view> type,
   facts.not_a_city_model = type != "CityJSON";
   if (facts.not_a_city_model)
     return "member 'type' is '" + std::string(type.value_or("missing")) + "', expected 'CityJSON'";
-  if (!version) return "member 'version' is missing or no text, expected \"1.0\", \"1.1\" or \"2.0\"";
+  if (!version)
+    return "member 'version' is missing or no text, expected \"1.0\", \"1.1\" or \"2.0\"";
   const auto known = version->substr(0, 3);
   if (known != "1.0" && known != "1.1" && known != "2.0")
     return "CityJSON version '" + std::string(version->substr(0, 20)) +
@@ -210,8 +211,7 @@ class GeometryBuilder {
       shape.type = GeometryType::Solid;
       nesting = 1;
     } else if (*type == "MultiSolid" || *type == "CompositeSolid") {
-      shape.type =
-          *type == "MultiSolid" ? GeometryType::MultiSolid : GeometryType::CompositeSolid;
+      shape.type = *type == "MultiSolid" ? GeometryType::MultiSolid : GeometryType::CompositeSolid;
       nesting = 2;
     } else {
       return unreadable("geometry type '" + std::string(type->substr(0, 60)) + "' is not read");
@@ -338,8 +338,9 @@ class GeometryBuilder {
   bool add_rings(dom::array rings, RawPolygon& polygon) {
     const auto unusable = [&](int code, const std::string& what, double measured) {
       polygon.usable = false;
-      report(code, "polygon " + std::to_string(feature_.polygons.size()) + " ring " +
-                       std::to_string(polygon.ring_count) + ": " + what,
+      report(code,
+             "polygon " + std::to_string(feature_.polygons.size()) + " ring " +
+                 std::to_string(polygon.ring_count) + ": " + what,
              measured);
     };
     for (const dom::element ring : rings) {
@@ -357,8 +358,7 @@ class GeometryBuilder {
           continue;
         }
         const Point3& point = vertices_[static_cast<std::size_t>(index)];
-        const double largest =
-            std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
+        const double largest = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
         if (!(largest <= kMaxCoordinate)) {
           unusable(issue_code::kCoordinateOutOfRange, "vertex " + std::to_string(index), largest);
           continue;
@@ -574,8 +574,8 @@ Result<void> read_cityjson(const RandomReader& file, const DocumentOptions& opti
     padded = simdjson::padded_string(*text);
     dom::element element;
     if (const auto code = parser.parse(padded).get(element); code != simdjson::SUCCESS)
-      note_failure(facts, "line " + std::to_string(slice.line) + ": " + what + ": " +
-                              json_error(code));
+      note_failure(facts,
+                   "line " + std::to_string(slice.line) + ": " + what + ": " + json_error(code));
     else
       parsed = element;
     return parsed;
@@ -670,9 +670,9 @@ class Lines {
       const auto found = std::find(begin, end, '\n');
       line.append(begin, found);
       if (line.size() > max_bytes_)
-        return fail(ErrorCode::ResourceExhausted,
-                    "line " + std::to_string(number_) + " has more than max_building_bytes = " +
-                        std::to_string(max_bytes_) + " bytes");
+        return fail(ErrorCode::ResourceExhausted, "line " + std::to_string(number_) +
+                                                      " has more than max_building_bytes = " +
+                                                      std::to_string(max_bytes_) + " bytes");
       at_ += static_cast<std::size_t>(found - begin);
       if (found == end) continue;
       ++at_;
@@ -791,7 +791,8 @@ Result<void> read_cityjson_seq(ByteReader& bytes, const DocumentOptions& options
       tree.add(std::string(key), loaded.back());
     }
     tree.link();
-    if (auto taken = delivery.deliver_all(tree, vertices, [&](std::uint32_t i) { return loaded[i]; });
+    if (auto taken =
+            delivery.deliver_all(tree, vertices, [&](std::uint32_t i) { return loaded[i]; });
         !taken)
       return taken;
   }

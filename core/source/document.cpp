@@ -75,10 +75,10 @@ Result<Format> detect_format(const std::filesystem::path& path, const ReadLimits
   const bool utf16 = start == "\xfe\xff" || start == "\xff\xfe";
   if (begin.front() == '<' || utf16) return Format::CityGml;
   if (begin.front() == '{') return document_or_sequence(*bytes, begin);
-  return fail(ErrorCode::InvalidArgument,
-              std::string(start == "PK" ? "the file is a zip archive" : "the file is neither XML "
-                                                                         "nor JSON") +
-                  ", expected CityGML or CityJSON, plain or .gz");
+  return fail(ErrorCode::InvalidArgument, std::string(start == "PK" ? "the file is a zip archive"
+                                                                    : "the file is neither XML "
+                                                                      "nor JSON") +
+                                              ", expected CityGML or CityJSON, plain or .gz");
 }
 
 Result<void> read_document(const std::filesystem::path& path, Format format,

@@ -96,7 +96,7 @@ struct DocumentFacts {
   Box3 declared_extent{};                  ///< empty: none
   std::uint32_t declared_srs = 0;
   std::set<std::string, std::less<>>
-      unresolved{};                  ///< ids that features refer to and that they do not contain
+      unresolved{};                   ///< ids that features refer to and that they do not contain
   std::uint64_t skipped_objects = 0;  ///< city objects of extension types
 
   std::uint32_t intern_srs(std::string_view name);

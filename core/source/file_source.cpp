@@ -16,11 +16,11 @@ namespace fs = std::filesystem;
 using namespace source;
 
 Error path_error(const fs::path& path, const std::error_code& error) {
-  const auto code = error == std::errc::no_such_file_or_directory ||
-                            error == std::errc::not_a_directory
-                        ? ErrorCode::NotFound
-                    : error == std::errc::permission_denied ? ErrorCode::PermissionDenied
-                                                            : ErrorCode::FailedPrecondition;
+  const auto code =
+      error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory
+          ? ErrorCode::NotFound
+      : error == std::errc::permission_denied ? ErrorCode::PermissionDenied
+                                              : ErrorCode::FailedPrecondition;
   return fail(code, "input '" + path.string() + "' cannot be read: " + error.message());
 }
 
@@ -162,16 +162,16 @@ class FileSource final : public CitySource {
                   "'" + scan.path.string() + "' changed while it was read");
     };
     std::size_t next = 0;
-    auto done = read_document(
-        scan.path, *scan.format, options, facts, [&](Feature& feature) -> Result<void> {
-          const std::size_t b = next++;
-          if (b >= scan.buildings.size() ||
-              feature.objects.front().gml_id != scan.buildings[b].gml_id ||
-              facts.srs_names.size() != scan.facts.srs_names.size())
-            return changed();
-          if (!file.selected[b]) return {};
-          return sink(maker.make(feature));
-        });
+    auto done = read_document(scan.path, *scan.format, options, facts,
+                              [&](Feature& feature) -> Result<void> {
+                                const std::size_t b = next++;
+                                if (b >= scan.buildings.size() ||
+                                    feature.objects.front().gml_id != scan.buildings[b].gml_id ||
+                                    facts.srs_names.size() != scan.facts.srs_names.size())
+                                  return changed();
+                                if (!file.selected[b]) return {};
+                                return sink(maker.make(feature));
+                              });
     if (!done) return done;
     if (next != scan.buildings.size()) return changed();
     return {};

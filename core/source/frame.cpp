@@ -111,9 +111,9 @@ std::vector<SrsUse> interpret_srs(const FileScan& scan, const Crs& assumed, CrsB
     if (!facts) continue;
 
     use.swap_axes = geographic && facts->north_first;
-    const Box3 seen = !use.extent.is_empty()           ? use.extent
+    const Box3 seen = !use.extent.is_empty()         ? use.extent
                       : i == scan.facts.declared_srs ? scan.facts.declared_extent
-                                                       : Box3{};
+                                                     : Box3{};
     if (!seen.is_empty()) {
       const Point3 as_stored = centre_of(seen);
       const Point3 swapped{as_stored.y, as_stored.x, as_stored.z};

@@ -97,9 +97,9 @@ template <class AnyCursor>
 Error syntax_error(AnyCursor& cursor, const std::string& expected) {
   if (cursor.error()) return *cursor.error();
   const int c = cursor.peek_solid();
-  const std::string found =
-      c < 0 ? "the text ends" : c < 0x80 ? std::string("found '") + static_cast<char>(c) + "'"
-                                         : "found byte " + std::to_string(c);
+  const std::string found = c < 0      ? "the text ends"
+                            : c < 0x80 ? std::string("found '") + static_cast<char>(c) + "'"
+                                       : "found byte " + std::to_string(c);
   return fail(ErrorCode::DataLoss,
               "line " + std::to_string(cursor.line()) + ": " + found + ", expected " + expected);
 }
@@ -122,7 +122,8 @@ Result<void> skip_value(AnyCursor& cursor, unsigned max_depth) {
                         ": values are nested deeper than max_depth = " + std::to_string(max_depth));
     } else if (c == '}' || c == ']') {
       if (open.empty() || open.back() != c)
-        return syntax_error(cursor, open.empty() ? "a value" : std::string("'") + open.back() + "'");
+        return syntax_error(cursor,
+                            open.empty() ? "a value" : std::string("'") + open.back() + "'");
       cursor.advance();
       open.pop_back();
     } else if (open.empty() && (c == ',' || c == ':')) {
@@ -130,8 +131,8 @@ Result<void> skip_value(AnyCursor& cursor, unsigned max_depth) {
     } else {
       cursor.advance();
       if (!open.empty()) continue;
-      for (int next = cursor.peek(); next >= 0 && !is_blank(next) && next != ',' && next != '}' &&
-                                     next != ']';
+      for (int next = cursor.peek();
+           next >= 0 && !is_blank(next) && next != ',' && next != '}' && next != ']';
            next = cursor.peek())
         cursor.advance();
     }
@@ -178,8 +179,8 @@ Result<void> JsonText::triples(const JsonSlice& array, std::uint64_t max_count,
   const auto number = [&](double& value) {
     token.clear();
     cursor.peek_solid();
-    for (int c = cursor.peek(); c >= 0 && !is_blank(c) && c != ',' && c != ']' &&
-                                token.size() < kMaxKey;
+    for (int c = cursor.peek();
+         c >= 0 && !is_blank(c) && c != ',' && c != ']' && token.size() < kMaxKey;
          c = cursor.peek()) {
       token.push_back(static_cast<char>(c));
       cursor.advance();

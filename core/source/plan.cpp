@@ -73,11 +73,11 @@ class Planner {
         return fail(ErrorCode::InvalidArgument,
                     "bbox has the value " + std::to_string(value) + ", expected finite numbers");
     if (box.min_x > box.max_x || box.min_y > box.max_y)
-      return fail(ErrorCode::InvalidArgument,
-                  "bbox is empty: min_x " + std::to_string(box.min_x) + ", max_x " +
-                      std::to_string(box.max_x) + ", min_y " + std::to_string(box.min_y) +
-                      ", max_y " + std::to_string(box.max_y) +
-                      ", expected the minimum before the maximum");
+      return fail(ErrorCode::InvalidArgument, "bbox is empty: min_x " + std::to_string(box.min_x) +
+                                                  ", max_x " + std::to_string(box.max_x) +
+                                                  ", min_y " + std::to_string(box.min_y) +
+                                                  ", max_y " + std::to_string(box.max_y) +
+                                                  ", expected the minimum before the maximum");
     if (box.z_range_m && !((*box.z_range_m)[0] <= (*box.z_range_m)[1]))
       return fail(ErrorCode::InvalidArgument, "bbox is empty: its lowest z is above its highest");
     if (box.crs.known() && !book_.facts(box.crs)) return book_.facts(box.crs).error();
@@ -90,8 +90,8 @@ class Planner {
     const DocumentFacts& facts = file.scan->facts;
     const bool about_it = facts.declared_srs == srs || facts.declared_srs == 0;
     if (!about_it || facts.declared_extent.is_empty()) return {};
-    const Box3 box = file.srs[srs].swap_axes ? with_axes_swapped(facts.declared_extent)
-                                             : facts.declared_extent;
+    const Box3 box =
+        file.srs[srs].swap_axes ? with_axes_swapped(facts.declared_extent) : facts.declared_extent;
     return overlap(box, file.srs[srs].extent) ? box : Box3{};
   }
 
@@ -176,8 +176,7 @@ class Planner {
       }
     }
     if (!unplaced.empty()) {
-      const std::string text = joined(unplaced) +
-                               (unplaced.size() == 1 ? " states" : " state") +
+      const std::string text = joined(unplaced) + (unplaced.size() == 1 ? " states" : " state") +
                                " no CRS that a bbox in " + query_.bbox->crs.id +
                                " can be compared with";
       if (!placed_any)
@@ -223,11 +222,11 @@ class Planner {
     Box3 envelope;
     for (const Point3& corner : corners) envelope.add(corner);
     if (query_.bbox_rule == BboxRule::Centre)
-      return (*area)->contains({(envelope.min.x + envelope.max.x) / 2,
-                                (envelope.min.y + envelope.max.y) / 2});
+      return (*area)->contains(
+          {(envelope.min.x + envelope.max.x) / 2, (envelope.min.y + envelope.max.y) / 2});
     // A transformed side bends by far less than this.
-    const double margin = 0.01 * std::max(envelope.max.x - envelope.min.x,
-                                          envelope.max.y - envelope.min.y);
+    const double margin =
+        0.01 * std::max(envelope.max.x - envelope.min.x, envelope.max.y - envelope.min.y);
     if (!(*area)->box_touches({envelope.min.x - margin, envelope.min.y - margin},
                               {envelope.max.x + margin, envelope.max.y + margin}))
       return false;
@@ -286,9 +285,9 @@ class Planner {
     if (found.size() > 1) {
       std::vector<std::string> names;
       for (const auto& [working, source] : found) names.push_back(source);
-      return fail(ErrorCode::FailedPrecondition,
-                  "the selected buildings are in different CRSs (" + joined(names) +
-                      "): name the one to work in with `crs`");
+      return fail(ErrorCode::FailedPrecondition, "the selected buildings are in different CRSs (" +
+                                                     joined(names) +
+                                                     "): name the one to work in with `crs`");
     }
     if (found.size() == 1)
       plan_.selection.crs = Crs{found.begin()->first};
@@ -303,8 +302,7 @@ class Planner {
     const Crs& working = plan_.selection.crs;
     if (query_.bbox) {
       const RequestBox& box = *query_.bbox;
-      std::array<Point3, 1> centre{
-          {{(box.min_x + box.max_x) / 2, (box.min_y + box.max_y) / 2, 0}}};
+      std::array<Point3, 1> centre{{{(box.min_x + box.max_x) / 2, (box.min_y + box.max_y) / 2, 0}}};
       if (!box.crs.id.empty() && working.known()) {
         const auto& transformer = book_.transformer(box.crs, working);
         if (!transformer) return transformer.error();
@@ -360,7 +358,8 @@ class Planner {
         if (!use.crs.known()) (query_.crs.known() ? assumed : unstated).insert(name);
       }
       report.crs = joined(crs_names);
-      for (const std::string& problem : problems) selection.warnings.push_back(name + ": " + problem);
+      for (const std::string& problem : problems)
+        selection.warnings.push_back(name + ": " + problem);
       if (scan.facts.skipped_objects > 0)
         selection.warnings.push_back(name + ": " + std::to_string(scan.facts.skipped_objects) +
                                      " objects of extension types were not read");

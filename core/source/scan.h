@@ -15,8 +15,8 @@ namespace citymesh::source {
 struct ScannedBuilding {
   std::string gml_id{};
   std::vector<std::string> part_ids{};
-  Box3 extent{};          ///< empty: no geometry
-  std::uint32_t srs = 0;  ///< of its first polygon
+  Box3 extent{};                                 ///< empty: no geometry
+  std::uint32_t srs = 0;                         ///< of its first polygon
   std::uint32_t first_ring = 0, ring_count = 0;  ///< run of Footprints::rings
 };
 

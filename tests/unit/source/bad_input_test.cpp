@@ -126,16 +126,17 @@ TEST(BadCoordinates, Absurd) {
 }
 
 TEST(BadCoordinates, TooFarFromTheOriginForTheExactGrid) {
-  const Building bad = between_good_ones(building(
-      "bad", multi_surface(member(polygon("p", square(3e6, 0))) +
-                           member(polygon("near", square(20, 0))))));
+  const Building bad =
+      between_good_ones(building("bad", multi_surface(member(polygon("p", square(3e6, 0))) +
+                                                      member(polygon("near", square(20, 0))))));
   EXPECT_THAT(bad, HasIssue(issue_code::kCoordinateOutOfRange));
   EXPECT_THAT(bad.geometries.at(0).polygons, SizeIs(1));
 }
 
 TEST(BadCoordinates, AStrayBuildingDoesNotMoveTheOrigin) {
   std::string city;
-  for (int i = 0; i < 5; ++i) city += simple_building("b" + std::to_string(i), 400000 + i * 20, 5e6);
+  for (int i = 0; i < 5; ++i)
+    city += simple_building("b" + std::to_string(i), 400000 + i * 20, 5e6);
   const Reading reading = read_text("a.gml", city_model(simple_building("stray", 0, 0) + city));
   EXPECT_EQ(reading.selection.origin, (Point3{400000, 5e6, 0}));
   EXPECT_THAT(reading.buildings.at(0), HasIssue(issue_code::kCoordinateOutOfRange));
@@ -151,21 +152,20 @@ TEST(BadCoordinates, Garbage) {
 }
 
 TEST(BadCoordinates, WrongCountAndEmptyRingsAndPolygons) {
-  for (const std::string& text :
-       {polygon("p", "0 0 0 1 0 0 1 1"), polygon("p", ""),
-        std::string("<gml:Polygon gml:id=\"p\"/>"),
-        std::string("<gml:Polygon><gml:exterior/></gml:Polygon>"),
-        std::string("<gml:Polygon><gml:interior>") + ring(square(0, 0)) +
-            "</gml:interior></gml:Polygon>"})
+  for (const std::string& text : {polygon("p", "0 0 0 1 0 0 1 1"), polygon("p", ""),
+                                  std::string("<gml:Polygon gml:id=\"p\"/>"),
+                                  std::string("<gml:Polygon><gml:exterior/></gml:Polygon>"),
+                                  std::string("<gml:Polygon><gml:interior>") + ring(square(0, 0)) +
+                                      "</gml:interior></gml:Polygon>"})
     EXPECT_THAT(between_good_ones(with_polygons(member(text))),
                 HasIssue(issue_code::kUnreadableRing))
         << text;
 }
 
 TEST(BadGeometry, EmptySolidsAndSurfacesGiveABuildingWithoutGeometry) {
-  const Building bad = between_good_ones(
-      building("bad", solid("") + multi_surface("") + "<bldg:lod1Solid/><bldg:lod2Solid>"
-                                                     "<gml:Solid/></bldg:lod2Solid>"));
+  const Building bad = between_good_ones(building("bad", solid("") + multi_surface("") +
+                                                             "<bldg:lod1Solid/><bldg:lod2Solid>"
+                                                             "<gml:Solid/></bldg:lod2Solid>"));
   EXPECT_THAT(bad.geometries, IsEmpty());
 }
 
@@ -187,11 +187,10 @@ TEST(BadXlinks, CyclesBecomeIssues) {
   EXPECT_THAT(between_good_ones(with_polygons(member(composite("a", member_by("#b"))) +
                                               member(composite("b", member_by("#a"))))),
               HasIssue(issue_code::kCyclicXlink));
-  EXPECT_THAT(
-      between_good_ones(with_polygons(
-          member("<gml:OrientableSurface gml:id=\"o\" orientation=\"-\"><gml:baseSurface "
-                 "xlink:href=\"#o\"/></gml:OrientableSurface>"))),
-      HasIssue(issue_code::kCyclicXlink));
+  EXPECT_THAT(between_good_ones(with_polygons(
+                  member("<gml:OrientableSurface gml:id=\"o\" orientation=\"-\"><gml:baseSurface "
+                         "xlink:href=\"#o\"/></gml:OrientableSurface>"))),
+              HasIssue(issue_code::kCyclicXlink));
 }
 
 TEST(BadXlinks, ReferencesThatMultiplyAreStopped) {
@@ -227,9 +226,10 @@ TEST(ReadLimits, ABuildingThatIsTooLargeIsDeliveredWithoutGeometry) {
 TEST(ReadLimits, MarkupWithoutEndIsStopped) {
   FileSourceOptions options;
   options.limits.max_building_bytes = 100'000;
-  EXPECT_THAT(failure_after_good(
-                  city_model(kGood + "<!--" + std::string(1'000'000, 'x') + "-->" + kLast), options),
-              HasSubstr("max_building_bytes = 100000"));
+  EXPECT_THAT(
+      failure_after_good(city_model(kGood + "<!--" + std::string(1'000'000, 'x') + "-->" + kLast),
+                         options),
+      HasSubstr("max_building_bytes = 100000"));
 }
 
 TEST(ReadLimits, FilesThatAreTooLongAreStopped) {
@@ -286,11 +286,10 @@ TEST(BadFile, UnreadableFolderIsPermissionDenied) {
 }
 
 TEST(BadFile, WhatIsNoCityModelIsNamed) {
-  for (const auto& [text, reason] :
-       {std::pair<std::string, std::string>{"", "empty"},
-        {std::string("PK\3\4zip"), "zip"},
-        {"v 0 0 0\nf 1 1 1\n", "neither XML nor JSON"},
-        {"[1, 2]", "neither XML nor JSON"}}) {
+  for (const auto& [text, reason] : {std::pair<std::string, std::string>{"", "empty"},
+                                     {std::string("PK\3\4zip"), "zip"},
+                                     {"v 0 0 0\nf 1 1 1\n", "neither XML nor JSON"},
+                                     {"[1, 2]", "neither XML nor JSON"}}) {
     const Reading reading = read_text("a.gml", text);
     EXPECT_FALSE(reading.error);
     EXPECT_EQ(reading.input().state, "failed");
@@ -300,7 +299,8 @@ TEST(BadFile, WhatIsNoCityModelIsNamed) {
 
 TEST(BadFile, DamagedGzipIsNamed) {
   Documents documents;
-  const auto path = documents.add("a.gml.gz", city_model(kGood + std::string(100'000, ' ') + kLast));
+  const auto path =
+      documents.add("a.gml.gz", city_model(kGood + std::string(100'000, ' ') + kLast));
   std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
   const Reading reading = documents.read();
   EXPECT_EQ(reading.input().state, "failed");
@@ -332,10 +332,12 @@ TEST(Reading, EndsWithTheSinksErrorAndWithAStop) {
   const auto selection = (*source)->select({}, {});
   ASSERT_TRUE(selection);
   int taken = 0;
-  const auto refused = (*source)->read({}, *selection, [&](Building&&) -> Result<void> {
-    ++taken;
-    return fail(ErrorCode::DataLoss, "no room");
-  }, {});
+  const auto refused = (*source)->read({}, *selection,
+                                       [&](Building&&) -> Result<void> {
+                                         ++taken;
+                                         return fail(ErrorCode::DataLoss, "no room");
+                                       },
+                                       {});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().message, "no room");
   EXPECT_EQ(taken, 1);

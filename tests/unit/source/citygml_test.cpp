@@ -50,10 +50,9 @@ TEST(CityGml, AssemblesABuildingThatHasOnlyBoundarySurfaces) {
 
 TEST(CityGml, FollowsXlinksForwardAndGivesThePolygonsTheirSurface) {
   const Building house = read_one(building(
-      "house",
-      solid(member_by("#pg") + member_by("#pr")) +
-          surface("GroundSurface", "g", multi_surface(member(polygon("pg", kGround)))) +
-          surface("RoofSurface", "r", multi_surface(member(polygon("pr", kRoof))))));
+      "house", solid(member_by("#pg") + member_by("#pr")) +
+                   surface("GroundSurface", "g", multi_surface(member(polygon("pg", kGround)))) +
+                   surface("RoofSurface", "r", multi_surface(member(polygon("pr", kRoof))))));
   ASSERT_THAT(house.geometries, SizeIs(2));
   const Geometry& stated = house.geometries[0];
   EXPECT_EQ(stated.type, GeometryType::Solid);
@@ -66,10 +65,10 @@ TEST(CityGml, FollowsXlinksForwardAndGivesThePolygonsTheirSurface) {
 }
 
 TEST(CityGml, FollowsXlinksBackwardFromSurfacesToTheSolid) {
-  const Building house = read_one(building(
-      "house", solid(member(polygon("pg", kGround)) + member(polygon("pr", kRoof))) +
-                   surface("GroundSurface", "g", multi_surface(member_by("#pg"))) +
-                   surface("RoofSurface", "r", multi_surface(member_by("#pr")))));
+  const Building house = read_one(
+      building("house", solid(member(polygon("pg", kGround)) + member(polygon("pr", kRoof))) +
+                            surface("GroundSurface", "g", multi_surface(member_by("#pg"))) +
+                            surface("RoofSurface", "r", multi_surface(member_by("#pr")))));
   ASSERT_THAT(house.geometries, SizeIs(2));
   EXPECT_EQ(house.geometries[0].polygons[0].surface, 0);
   EXPECT_EQ(house.geometries[0].polygons[1].surface, 1);
@@ -101,10 +100,10 @@ TEST(CityGml, OrientableSurfacesReverseAndTwoReversalsCancel) {
   };
   const Building house = read_one(building(
       "house",
-      multi_surface(member(polygon("p", kGround)) +
-                    member(oriented("o1", "-", " xlink:href=\"#p\"/>")) +
-                    member(oriented("o2", "-", " xlink:href=\"#o1\"/>")) +
-                    member(oriented("o3", "-", ">" + polygon("q", kRoof) + "</gml:baseSurface>")))));
+      multi_surface(
+          member(polygon("p", kGround)) + member(oriented("o1", "-", " xlink:href=\"#p\"/>")) +
+          member(oriented("o2", "-", " xlink:href=\"#o1\"/>")) +
+          member(oriented("o3", "-", ">" + polygon("q", kRoof) + "</gml:baseSurface>")))));
   const Geometry& geometry = house.geometries.at(0);
   ASSERT_THAT(geometry.polygons, SizeIs(4));
   const auto forward = corners(geometry, 0);
@@ -115,9 +114,9 @@ TEST(CityGml, OrientableSurfacesReverseAndTwoReversalsCancel) {
 
 TEST(CityGml, ReadsEverySpellingOfARing) {
   const auto with_ring = [](const std::string& content) {
-    return building("b", multi_surface(member("<gml:Polygon><gml:exterior><gml:LinearRing>" +
-                                              content +
-                                              "</gml:LinearRing></gml:exterior></gml:Polygon>")));
+    return building("b",
+                    multi_surface(member("<gml:Polygon><gml:exterior><gml:LinearRing>" + content +
+                                         "</gml:LinearRing></gml:exterior></gml:Polygon>")));
   };
   const std::vector<Point3> expected{{0, 0, 0}, {4, 0, 0}, {4, 3, 1}, {0, 0, 0}};
   for (const std::string& content : {
@@ -125,9 +124,10 @@ TEST(CityGml, ReadsEverySpellingOfARing) {
            std::string("<gml:posList>\n\t0 0  0\r\n 4 0 0 +4 3e0 1.0\t0 0 0\n</gml:posList>"),
            std::string("<gml:pos>0 0 0</gml:pos><gml:pos>4 0 0</gml:pos><gml:pos>4 3 1</gml:pos>"
                        "<gml:pos>0 0 0</gml:pos>"),
-           std::string("<gml:pointProperty><gml:Point><gml:pos>0 0 0</gml:pos></gml:Point>"
-                       "</gml:pointProperty><gml:pos>4 0 0</gml:pos><gml:pointRep><gml:Point>"
-                       "<gml:pos>4 3 1</gml:pos></gml:Point></gml:pointRep><gml:pos>0 0 0</gml:pos>"),
+           std::string(
+               "<gml:pointProperty><gml:Point><gml:pos>0 0 0</gml:pos></gml:Point>"
+               "</gml:pointProperty><gml:pos>4 0 0</gml:pos><gml:pointRep><gml:Point>"
+               "<gml:pos>4 3 1</gml:pos></gml:Point></gml:pointRep><gml:pos>0 0 0</gml:pos>"),
            std::string("<gml:coordinates>0,0,0 4,0,0 4,3,1 0,0,0</gml:coordinates>"),
            std::string("<gml:posList>0 0 0 4 <!-- between --> 0 0 4 3 1 0 0 0</gml:posList>"),
        })
@@ -156,19 +156,19 @@ TEST(CityGml, KeepsHolesAndPutsTheExteriorFirst) {
 }
 
 TEST(CityGml, ReadsSurfacePatchesTrianglesAndSolidsWithCavities) {
-  const std::string triangle =
-      "<gml:Triangle><gml:exterior>" + ring("0 0 0 4 0 0 4 3 1 0 0 0") + "</gml:exterior></gml:Triangle>";
-  const std::string patch = "<gml:PolygonPatch><gml:exterior>" + ring(kGround) +
-                            "</gml:exterior></gml:PolygonPatch>";
+  const std::string triangle = "<gml:Triangle><gml:exterior>" + ring("0 0 0 4 0 0 4 3 1 0 0 0") +
+                               "</gml:exterior></gml:Triangle>";
+  const std::string patch =
+      "<gml:PolygonPatch><gml:exterior>" + ring(kGround) + "</gml:exterior></gml:PolygonPatch>";
   const Building house = read_one(building(
-      "b", "<bldg:lod2Solid><gml:Solid><gml:exterior><gml:CompositeSurface>" +
-               member("<gml:Surface><gml:patches>" + patch + triangle +
-                      "</gml:patches></gml:Surface>") +
-               member("<gml:TriangulatedSurface><gml:trianglePatches>" + triangle +
-                      "</gml:trianglePatches></gml:TriangulatedSurface>") +
-               "</gml:CompositeSurface></gml:exterior><gml:interior><gml:CompositeSurface>" +
-               member(polygon("c", kRoof)) +
-               "</gml:CompositeSurface></gml:interior></gml:Solid></bldg:lod2Solid>"));
+      "b",
+      "<bldg:lod2Solid><gml:Solid><gml:exterior><gml:CompositeSurface>" +
+          member("<gml:Surface><gml:patches>" + patch + triangle + "</gml:patches></gml:Surface>") +
+          member("<gml:TriangulatedSurface><gml:trianglePatches>" + triangle +
+                 "</gml:trianglePatches></gml:TriangulatedSurface>") +
+          "</gml:CompositeSurface></gml:exterior><gml:interior><gml:CompositeSurface>" +
+          member(polygon("c", kRoof)) +
+          "</gml:CompositeSurface></gml:interior></gml:Solid></bldg:lod2Solid>"));
   const Geometry& geometry = house.geometries.at(0);
   ASSERT_THAT(geometry.polygons, SizeIs(4));
   EXPECT_THAT(geometry.solids.at(0).exterior, ElementsAre(0u, 1u, 2u));
@@ -184,8 +184,9 @@ TEST(CityGml, ReadsCompositeAndMultiSolids) {
   for (const auto& [name, type] : {std::pair{"CompositeSolid", GeometryType::CompositeSolid},
                                    {"MultiSolid", GeometryType::MultiSolid}}) {
     const std::string tag = std::string("gml:") + name;
-    const Building house = read_one(building("b", "<bldg:lod2Solid><" + tag + ">" + one("a") +
-                                                      one("c") + "</" + tag + "></bldg:lod2Solid>"));
+    const Building house =
+        read_one(building("b", "<bldg:lod2Solid><" + tag + ">" + one("a") + one("c") + "</" + tag +
+                                   "></bldg:lod2Solid>"));
     EXPECT_EQ(house.geometries.at(0).type, type);
     EXPECT_THAT(house.geometries.at(0).solids, SizeIs(2));
   }
@@ -196,11 +197,12 @@ TEST(CityGml, KeepsOpeningsWithTheirWall) {
       "<bldg:opening><bldg:Window gml:id=\"win\"><bldg:lod3MultiSurface><gml:MultiSurface>" +
       member(polygon("pwin", "2 0 2 4 0 2 4 0 4 2 0 4 2 0 2")) +
       "</gml:MultiSurface></bldg:lod3MultiSurface></bldg:Window></bldg:opening>";
-  const Building house = read_one(building(
-      "b", "<bldg:boundedBy><bldg:WallSurface gml:id=\"w\"><bldg:lod3MultiSurface>"
-           "<gml:MultiSurface>" +
-               member(polygon("pw", kWall)) + "</gml:MultiSurface></bldg:lod3MultiSurface>" +
-               window + "</bldg:WallSurface></bldg:boundedBy>"));
+  const Building house = read_one(
+      building("b",
+               "<bldg:boundedBy><bldg:WallSurface gml:id=\"w\"><bldg:lod3MultiSurface>"
+               "<gml:MultiSurface>" +
+                   member(polygon("pw", kWall)) + "</gml:MultiSurface></bldg:lod3MultiSurface>" +
+                   window + "</bldg:WallSurface></bldg:boundedBy>"));
   ASSERT_THAT(house.surfaces, SizeIs(2));
   EXPECT_EQ(house.surfaces[1].type, SurfaceType::Window);
   EXPECT_EQ(house.surfaces[1].parent, 0);
@@ -209,15 +211,15 @@ TEST(CityGml, KeepsOpeningsWithTheirWall) {
 }
 
 TEST(CityGml, NestsPartsAndMarksFootprints) {
-  const Building house = read_one(building(
-      "b", "<bldg:lod0FootPrint><gml:MultiSurface>" + member(polygon("f", kGround)) +
-               "</gml:MultiSurface></bldg:lod0FootPrint>"
-               "<bldg:consistsOfBuildingPart><bldg:BuildingPart gml:id=\"p1\">" +
-               multi_surface(member(polygon("x", kRoof))) +
-               "</bldg:BuildingPart></bldg:consistsOfBuildingPart>"
-               "<bldg:consistsOfBuildingPart><bldg:BuildingPart>" +
-               multi_surface(member(polygon("y", kRoof))) +
-               "</bldg:BuildingPart></bldg:consistsOfBuildingPart>"));
+  const Building house = read_one(
+      building("b", "<bldg:lod0FootPrint><gml:MultiSurface>" + member(polygon("f", kGround)) +
+                        "</gml:MultiSurface></bldg:lod0FootPrint>"
+                        "<bldg:consistsOfBuildingPart><bldg:BuildingPart gml:id=\"p1\">" +
+                        multi_surface(member(polygon("x", kRoof))) +
+                        "</bldg:BuildingPart></bldg:consistsOfBuildingPart>"
+                        "<bldg:consistsOfBuildingPart><bldg:BuildingPart>" +
+                        multi_surface(member(polygon("y", kRoof))) +
+                        "</bldg:BuildingPart></bldg:consistsOfBuildingPart>"));
   EXPECT_TRUE(house.geometries.at(0).footprint);
   ASSERT_THAT(house.parts, SizeIs(2));
   EXPECT_EQ(house.parts[0].gml_id, "p1");
@@ -260,13 +262,16 @@ TEST(CityGml, SkipsAndCountsWhatDoesNotBelongToTheShell) {
   const Building house = read_one(
       "<app:appearanceMember><app:Appearance><app:theme>x</app:theme></app:Appearance>"
       "</app:appearanceMember>" +
-      building("b", "<app:appearance><app:Appearance/></app:appearance>"
-                    "<bldg:outerBuildingInstallation><bldg:BuildingInstallation>" + inside +
-                        "</bldg:BuildingInstallation></bldg:outerBuildingInstallation>"
-                        "<bldg:interiorRoom><bldg:Room>" + inside +
-                        "</bldg:Room></bldg:interiorRoom>"
-                        "<ade:energy><ade:demand>3</ade:demand></ade:energy><ade:extra/>" +
-                        multi_surface(member(polygon("x", kRoof)))));
+      building("b",
+               "<app:appearance><app:Appearance/></app:appearance>"
+               "<bldg:outerBuildingInstallation><bldg:BuildingInstallation>" +
+                   inside +
+                   "</bldg:BuildingInstallation></bldg:outerBuildingInstallation>"
+                   "<bldg:interiorRoom><bldg:Room>" +
+                   inside +
+                   "</bldg:Room></bldg:interiorRoom>"
+                   "<ade:energy><ade:demand>3</ade:demand></ade:energy><ade:extra/>" +
+                   multi_surface(member(polygon("x", kRoof)))));
   EXPECT_EQ(house.skipped_installations, 1u);
   EXPECT_EQ(house.skipped_ade_elements, 2u);
   ASSERT_THAT(house.geometries, SizeIs(1));
@@ -286,15 +291,17 @@ TEST(CityGml, ASolidMayReferToSurfacesOfAnInstallation) {
 
 TEST(CityGml, CrsAndDimensionAreInheritedFromTheNearest) {
   const std::string two_d =
-      building("flat", "<bldg:lod0FootPrint><gml:MultiSurface srsName=\"EPSG:25832\" "
-                       "srsDimension=\"2\">" +
-                           member(polygon("f", "500000 5700000 500010 5700000 500010 5700010 "
-                                               "500000 5700000")) +
-                           "</gml:MultiSurface></bldg:lod0FootPrint>");
+      building("flat",
+               "<bldg:lod0FootPrint><gml:MultiSurface srsName=\"EPSG:25832\" "
+               "srsDimension=\"2\">" +
+                   member(polygon("f",
+                                  "500000 5700000 500010 5700000 500010 5700010 "
+                                  "500000 5700000")) +
+                   "</gml:MultiSurface></bldg:lod0FootPrint>");
   const Reading reading = read_text(
-      "a.gml", city_model(envelope("urn:ogc:def:crs:EPSG::25832", "500000 5700000 0",
-                                   "500100 5700100 10") +
-                          two_d + simple_building("b", 500020, 5700020, 3)));
+      "a.gml",
+      city_model(envelope("urn:ogc:def:crs:EPSG::25832", "500000 5700000 0", "500100 5700100 10") +
+                 two_d + simple_building("b", 500020, 5700020, 3)));
   ASSERT_THAT(reading.buildings, SizeIs(2));
   EXPECT_EQ(reading.selection.crs.id, "EPSG:25832");
   EXPECT_EQ(reading.selection.origin, (Point3{500000, 5700000, 0}));
@@ -346,16 +353,16 @@ TEST(CityGml, TakesMembersOfAWfsAnswer) {
 }
 
 TEST(CityGml, ReadsGzipAndNamesBuildingsWithoutIdByFileAndOrdinal) {
-  const Reading reading =
-      read_text("tile_7.gml.gz", city_model(simple_building("a", 0, 0) + simple_building("", 50, 0)));
+  const Reading reading = read_text(
+      "tile_7.gml.gz", city_model(simple_building("a", 0, 0) + simple_building("", 50, 0)));
   EXPECT_THAT(reading.ids(), ElementsAre("a", "tile_7_2"));
   EXPECT_EQ(reading.input().file, "tile_7.gml.gz");
 }
 
 TEST(CityGml, DeliversRepeatedIdsInOrder) {
-  const Reading reading = read_text(
-      "a.gml", city_model(simple_building("x", 0, 0) + simple_building("y", 50, 0) +
-                          simple_building("x", 100, 0)));
+  const Reading reading =
+      read_text("a.gml", city_model(simple_building("x", 0, 0) + simple_building("y", 50, 0) +
+                                    simple_building("x", 100, 0)));
   EXPECT_THAT(reading.ids(), ElementsAre("x", "y", "x"));
   EXPECT_THAT(reading.selection.object_ids, ElementsAre("x", "y", "x"));
 }

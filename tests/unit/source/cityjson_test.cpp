@@ -9,7 +9,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-const std::string kVertices = "[[0,0,0],[1000,0,0],[1000,1000,0],[0,1000,0],[0,0,500],[1000,0,500]]";
+const std::string kVertices =
+    "[[0,0,0],[1000,0,0],[1000,1000,0],[0,1000,0],[0,0,500],[1000,0,500]]";
 const std::string kTransform =
     R"("transform":{"scale":[0.01,0.01,0.01],"translate":[400000,5000000,30]})";
 
@@ -89,12 +90,11 @@ TEST(CityJson, NestsPartsFromEitherDirectionAndCountsInstallations) {
   const std::string part = object("BuildingPart", surfaces(), R"(,"parents":["b"])");
   const Reading reading = read_text(
       "a.json",
-      city_json("\"p1\":" + part + ",\"b\":" +
-                object("Building", "", R"(,"children":["p2","i"])") + ",\"p2\":" +
-                object("BuildingPart", surfaces()) + ",\"i\":" +
-                object("BuildingInstallation", surfaces(), R"(,"parents":["b"])") + ",\"room\":" +
-                object("BuildingRoom", surfaces(), R"(,"parents":["b"])") + ",\"orphan\":" +
-                object("BuildingPart", surfaces(), R"(,"parents":["nobody"])")));
+      city_json("\"p1\":" + part + ",\"b\":" + object("Building", "", R"(,"children":["p2","i"])") +
+                ",\"p2\":" + object("BuildingPart", surfaces()) +
+                ",\"i\":" + object("BuildingInstallation", surfaces(), R"(,"parents":["b"])") +
+                ",\"room\":" + object("BuildingRoom", surfaces(), R"(,"parents":["b"])") +
+                ",\"orphan\":" + object("BuildingPart", surfaces(), R"(,"parents":["nobody"])")));
   EXPECT_THAT(reading.ids(), ElementsAre("b", "orphan"));
   const Building& house = reading.buildings.at(0);
   ASSERT_THAT(house.parts, SizeIs(2));
@@ -106,9 +106,8 @@ TEST(CityJson, NestsPartsFromEitherDirectionAndCountsInstallations) {
 
 TEST(CityJson, PartsThatContainEachOtherAreDeliveredOnce) {
   const Reading reading = read_text(
-      "a.json",
-      city_json("\"p\":" + object("BuildingPart", surfaces(), R"(,"children":["q"])") + ",\"q\":" +
-                object("BuildingPart", surfaces(), R"(,"children":["p"])")));
+      "a.json", city_json("\"p\":" + object("BuildingPart", surfaces(), R"(,"children":["q"])") +
+                          ",\"q\":" + object("BuildingPart", surfaces(), R"(,"children":["p"])")));
   ASSERT_THAT(reading.ids(), ElementsAre("p"));
   EXPECT_THAT(reading.buildings[0].parts, SizeIs(1));
 }
@@ -116,8 +115,8 @@ TEST(CityJson, PartsThatContainEachOtherAreDeliveredOnce) {
 TEST(CityJson, KeepsAttributesAndSkipsOtherObjects) {
   const Reading reading = read_text(
       "a.json",
-      city_json("\"road\":" + object("Road", surfaces()) + ",\"x\":" +
-                object("+NoiseBuilding", surfaces()) + ",\"b\":" +
+      city_json("\"road\":" + object("Road", surfaces()) +
+                ",\"x\":" + object("+NoiseBuilding", surfaces()) + ",\"b\":" +
                 object("Building", surfaces(),
                        R"(,"attributes":{"measuredHeight":12.5,"storeysAboveGround":3,"flat":true,)"
                        R"("name":"a \"b\"","none":null,"list":[1, 2]})")));
@@ -133,9 +132,9 @@ TEST(CityJson, KeepsAttributesAndSkipsOtherObjects) {
 
 TEST(CityJson, ReadsVersion10WithoutTransformWithNumericLodAndByteOrderMark) {
   const std::string geometry = R"({"type":"MultiSurface","lod":2.0,"boundaries":[[[0,1,2]]]})";
-  const Reading reading = read_text(
-      "a.json", "\xef\xbb\xbf" + city_json("\"b\":" + object("Building", geometry), "1.0",
-                                           "[[0.5,0,0],[1,0,0],[1,1e0,0]]", ""));
+  const Reading reading =
+      read_text("a.json", "\xef\xbb\xbf" + city_json("\"b\":" + object("Building", geometry), "1.0",
+                                                     "[[0.5,0,0],[1,0,0],[1,1e0,0]]", ""));
   EXPECT_EQ(reading.input().state, "read") << reading.input().message;
   EXPECT_EQ(reading.input().format, "CityJSON 1.0");
   EXPECT_EQ(reading.buildings.at(0).geometries.at(0).lod, (Lod{2, 0}));
@@ -146,12 +145,14 @@ TEST(CityJson, ReadsASequenceLineByLineEvenPacked) {
   const std::string text =
       R"({"type":"CityJSON","version":"1.1",)" + kTransform +
       R"(,"metadata":{"referenceSystem":"https://www.opengis.net/def/crs/EPSG/0/25833"},)"
-      R"("CityObjects":{},"vertices":[]})" "\n" +
+      R"("CityObjects":{},"vertices":[]})"
+      "\n" +
       R"({"type":"CityJSONFeature","id":"a","CityObjects":{"a":)" + object("Building", surfaces()) +
       "},\"vertices\":" + kVertices + "}\n\n" +
       R"({"type":"CityJSONFeature","id":"b","CityObjects":{"b":)" +
-      object("Building", "", R"(,"children":["c"])") + ",\"c\":" +
-      object("BuildingPart", surfaces(), R"(,"parents":["b"])") + "},\"vertices\":" + kVertices + "}";
+      object("Building", "", R"(,"children":["c"])") +
+      ",\"c\":" + object("BuildingPart", surfaces(), R"(,"parents":["b"])") +
+      "},\"vertices\":" + kVertices + "}";
   for (const auto* name : {"a.jsonl", "a.jsonl.gz"}) {
     const Reading reading = read_text(name, text);
     EXPECT_EQ(reading.input().format, "CityJSONSeq 1.1");
@@ -168,10 +169,11 @@ TEST(CityJson, ReadsAPackedDocument) {
 TEST(BadJson, ASequenceGoesOnAfterABrokenLine) {
   const std::string feature = R"({"type":"CityJSONFeature","id":"a","CityObjects":{"a":)" +
                               object("Building", surfaces()) + "},\"vertices\":" + kVertices + "}";
-  const Reading reading = read_text(
-      "a.jsonl", R"({"type":"CityJSON","version":"2.0",)" + kTransform +
-                     R"(,"CityObjects":{},"vertices":[]})" "\n{\"type\":[\n" + feature +
-                     "\n{\"type\":\"Feature\"}\n" + feature + "\n");
+  const Reading reading =
+      read_text("a.jsonl", R"({"type":"CityJSON","version":"2.0",)" + kTransform +
+                               R"(,"CityObjects":{},"vertices":[]})"
+                               "\n{\"type\":[\n" +
+                               feature + "\n{\"type\":\"Feature\"}\n" + feature + "\n");
   EXPECT_EQ(reading.input().state, "failed");
   EXPECT_THAT(reading.input().message, HasSubstr("line 2"));
   EXPECT_THAT(reading.ids(), ElementsAre("a", "a"));
@@ -208,8 +210,8 @@ TEST(BadJson, WrongHeadersAreNamed) {
 }
 
 TEST(BadJson, DeepNestingIsRefusedNamingTheLimit) {
-  const Reading reading =
-      read_text("a.json", "{\"type\":" + std::string(100'000, '[') + std::string(100'000, ']') + "}");
+  const Reading reading = read_text(
+      "a.json", "{\"type\":" + std::string(100'000, '[') + std::string(100'000, ']') + "}");
   EXPECT_EQ(reading.input().state, "failed");
   EXPECT_THAT(reading.input().message, HasSubstr("max_depth = 256"));
 }
@@ -259,7 +261,8 @@ TEST(BadJson, EmptyRingsAndGeometries) {
 
 TEST(BadJson, AbsurdVerticesAreIssuesOfThePolygonsThatUseThem) {
   for (const auto* value : {"1e300", "1e999", "-9223372036854775808"}) {
-    const std::string vertices = kVertices.substr(0, kVertices.size() - 1) + ",[" + value + ",0,0]]";
+    const std::string vertices =
+        kVertices.substr(0, kVertices.size() - 1) + ",[" + value + ",0,0]]";
     const Building bad =
         between_good_ones(object("Building", surfaces("[[[0,1,2]],[[0,1,6]]]")), vertices);
     EXPECT_THAT(bad, HasIssue(issue_code::kCoordinateOutOfRange)) << value;
@@ -273,7 +276,8 @@ TEST(BadJson, SemanticsThatDoNotFitAreIgnored) {
         R"({"surfaces":[7],"values":null})", R"({"surfaces":[{"type":3}],"values":[[0]]})", "[]"}) {
     const Building bad = between_good_ones(
         object("Building", R"({"type":"MultiSurface","lod":"2","boundaries":[[[0,1,2]],[[0,2,3]]],)"
-                           R"("semantics":)" + std::string(semantics) + "}"));
+                           R"("semantics":)" +
+                               std::string(semantics) + "}"));
     EXPECT_THAT(bad.geometries.at(0).polygons, SizeIs(2)) << semantics;
   }
 }

@@ -29,8 +29,7 @@ constexpr KnownFile kKnownFiles[] = {
     {"berlin-gasometer-lod2/Gasometer_tile_0_0.gml.gz", "CityGML 1.0", 118, 0, "EPSG:3068+5783"},
     {"potsdam-lod1/Potsdam_LoD1.gml", "CityGML 1.0", 97, 0, "EPSG:25833+5783"},
     {"nrw-lod2/LoD2_32_280_5659_1_NW.gml", "CityGML 1.0", 109, 55, "EPSG:25832+7837"},
-    {"saxony-lod2/LoD2_33_416_5656_2_SN_14_buildings.gml", "CityGML 1.0", 14, 7,
-     "EPSG:25833+7837"},
+    {"saxony-lod2/LoD2_33_416_5656_2_SN_14_buildings.gml", "CityGML 1.0", 14, 7, "EPSG:25833+7837"},
     {"vienna-lod2/Karl-Marx-Hof.gml.gz", "CityGML 2.0", 1, 218, "EPSG:31256"},
     {"vienna-lod2/Fichtegasse.gml", "CityGML 2.0", 1, 12, "EPSG:31256"},
     {"vienna-lod2/vienna.city.jsonl", "CityJSONSeq 1.1", 149, 443, ""},
@@ -80,8 +79,7 @@ constexpr KnownFile kKnownFiles[] = {
      1, 0, "EPSG:32618"},
     {"citygml4j-samples/lod2_buildings_v3.gml", "CityGML 3.0", 100, 0, "EPSG:3068+5783"},
     {"citygml4j-samples/lod2_buildings_v2.json", "CityJSON 2.0", 100, 0, "EPSG:3068"},
-    {"citygml4j-samples/lod2_buildings_as_CityJSON_features.jsonl", "CityJSONSeq 2.0", 100, 0,
-     ""},
+    {"citygml4j-samples/lod2_buildings_as_CityJSON_features.jsonl", "CityJSONSeq 2.0", 100, 0, ""},
     {"citygml4j-samples/lod4_building_v2.gml", "CityGML 2.0", 1, 0, "EPSG:25832+5783"},
     {"small-cities/zurich-lod2-citygml1.gml", "CityGML 1.0", 4, 6, "EPSG:21781"},
     {"small-cities/delft-lod1-citygml2.gml", "CityGML 2.0", 3, 0, "EPSG:7415"},
@@ -120,16 +118,19 @@ TEST_P(RealData, IsReadWithAllBuildingsPartsAndItsCrs) {
 
   std::uint64_t buildings = 0, parts = 0, empty = 0, issues = 0;
   Box3 whole;
-  const auto done = (*source)->read({}, *selection, [&](Building&& building) -> Result<void> {
-    ++buildings;
-    parts += building.parts.size();
-    issues += building.source_issues.size();
-    for (const Building& part : building.parts) issues += part.source_issues.size();
-    const Box3 box = extent(building);
-    if (box.is_empty()) ++empty;
-    whole.add(box);
-    return {};
-  }, {});
+  const auto done = (*source)->read({}, *selection,
+                                    [&](Building&& building) -> Result<void> {
+                                      ++buildings;
+                                      parts += building.parts.size();
+                                      issues += building.source_issues.size();
+                                      for (const Building& part : building.parts)
+                                        issues += part.source_issues.size();
+                                      const Box3 box = extent(building);
+                                      if (box.is_empty()) ++empty;
+                                      whole.add(box);
+                                      return {};
+                                    },
+                                    {});
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_EQ(buildings, known.buildings);
   EXPECT_EQ(parts, known.parts);

@@ -38,13 +38,12 @@ inline Reading read_from(CitySource& source, const BuildingQuery& query = {}) {
     return reading;
   }
   reading.selection = *selection;
-  const auto done = source.read(
-      query, *selection,
-      [&](Building&& building) -> Result<void> {
-        reading.buildings.push_back(std::move(building));
-        return {};
-      },
-      {});
+  const auto done = source.read(query, *selection,
+                                [&](Building&& building) -> Result<void> {
+                                  reading.buildings.push_back(std::move(building));
+                                  return {};
+                                },
+                                {});
   if (!done) reading.error = done.error();
   return reading;
 }

@@ -41,17 +41,16 @@ TEST(Selection, OriginIsTheDeclaredLowerCornerInWholeMetresWhateverIsSelected) {
 }
 
 TEST(Selection, OriginWithoutDeclaredExtentIsTheLowerCornerOfAllBuildings) {
-  const Reading reading = read_text("a.gml",
-                                    city_model(simple_building("a", 100.7, 200.2, 5.5) +
-                                               simple_building("b", 300, 150.9, 7)),
-                                    {.object_ids = {"b"}});
+  const Reading reading = read_text(
+      "a.gml",
+      city_model(simple_building("a", 100.7, 200.2, 5.5) + simple_building("b", 300, 150.9, 7)),
+      {.object_ids = {"b"}});
   EXPECT_EQ(reading.selection.origin, (Point3{100, 150, 5}));
 }
 
 TEST(Selection, ADeclaredExtentThatContradictsTheBuildingsIsNotUsed) {
-  const Reading reading =
-      read_text("a.gml", city_model(envelope(kUtm33, "0 0 0", "1 1 1") +
-                                    simple_building("a", kX, kY, 20)));
+  const Reading reading = read_text(
+      "a.gml", city_model(envelope(kUtm33, "0 0 0", "1 1 1") + simple_building("a", kX, kY, 20)));
   EXPECT_EQ(reading.selection.origin, (Point3{kX, kY, 20}));
 }
 
@@ -73,7 +72,8 @@ TEST(Selection, IntersectsLooksAtTheGroundNotAtTheEaves) {
       "h", surface("GroundSurface", "g", multi_surface(member(polygon("p", square(kX, kY))))) +
                surface("RoofSurface", "r",
                        multi_surface(member(polygon("q", square(kX - 5, kY - 5, 9, 20))))));
-  const std::string text = city_model(envelope(kUtm33, "389900 5819900 0", "390200 5820100 50") + house);
+  const std::string text =
+      city_model(envelope(kUtm33, "389900 5819900 0", "390200 5820100 50") + house);
   EXPECT_THAT(read_text("a.gml", text, box(kX - 10, kY, kX - 1, kY + 5)).ids(), IsEmpty());
   EXPECT_THAT(read_text("a.gml", text, box(kX - 10, kY, kX, kY + 5)).ids(), ElementsAre("h"));
 }
@@ -118,7 +118,8 @@ TEST(Selection, TakesABoxInDegreesAndInAnotherZone) {
     std::array<Point3, 1> middle{{{kX + 25, kY + 5, 0}}};
     ASSERT_TRUE(transformer->apply(middle));
     const auto [x, y, z] = middle[0];
-    const Reading reading = read_text("a.gml", row(), box(x - reach, y - reach, x + reach, y + reach, crs));
+    const Reading reading =
+        read_text("a.gml", row(), box(x - reach, y - reach, x + reach, y + reach, crs));
     ASSERT_FALSE(reading.error) << reading.error->message;
     EXPECT_THAT(reading.ids(), ElementsAre("b")) << crs;
     EXPECT_EQ(reading.selection.crs.id, "EPSG:25833");
@@ -144,11 +145,11 @@ TEST(Selection, AnEmptyBoxOfTheCityIsNoError) {
 }
 
 TEST(Selection, IdsOfPartsSelectTheirBuildingAndMissingOnesAreNamed) {
-  const std::string text = city_model(
-      simple_building("a", 0, 0) +
-      building("b", "<bldg:consistsOfBuildingPart><bldg:BuildingPart gml:id=\"b1\">" +
-                        multi_surface(member(polygon("p", square(50, 0)))) +
-                        "</bldg:BuildingPart></bldg:consistsOfBuildingPart>"));
+  const std::string text =
+      city_model(simple_building("a", 0, 0) +
+                 building("b", "<bldg:consistsOfBuildingPart><bldg:BuildingPart gml:id=\"b1\">" +
+                                   multi_surface(member(polygon("p", square(50, 0)))) +
+                                   "</bldg:BuildingPart></bldg:consistsOfBuildingPart>"));
   const Reading reading = read_text("a.gml", text, {.object_ids = {"b1", "nobody"}});
   EXPECT_THAT(reading.ids(), ElementsAre("b"));
   EXPECT_THAT(reading.selection.missing_ids, ElementsAre("nobody"));
@@ -171,8 +172,7 @@ TEST(Selection, SeveralFilesKeepTheirOrder) {
 }
 
 std::string in_crs(const std::string& id, const std::string& srs, double x, double y) {
-  return building(id, "<gml:boundedBy><gml:Envelope srsName=\"" + srs +
-                          "\"/></gml:boundedBy>" +
+  return building(id, "<gml:boundedBy><gml:Envelope srsName=\"" + srs + "\"/></gml:boundedBy>" +
                           multi_surface(member(polygon(id + "p", square(x, y)))));
 }
 
@@ -205,7 +205,8 @@ TEST(WorkingCrs, MustBeProjectedInMetres) {
 }
 
 TEST(WorkingCrs, OfLatitudeAndLongitudeIsTheUtmZone) {
-  const std::string lat_lon = "35.6800 139.7500 5 35.6801 139.7500 5 35.6801 139.7501 5 35.6800 139.7500 5";
+  const std::string lat_lon =
+      "35.6800 139.7500 5 35.6801 139.7500 5 35.6801 139.7501 5 35.6800 139.7500 5";
   const std::string text = city_model(
       envelope("http://www.opengis.net/def/crs/EPSG/0/6697", "35.68 139.75 0", "35.69 139.76 50") +
       building("b", multi_surface(member(polygon("p", lat_lon)))));
@@ -221,12 +222,14 @@ TEST(WorkingCrs, OfLatitudeAndLongitudeIsTheUtmZone) {
 }
 
 TEST(AxisOrder, GeographicDataThatStoresLongitudeFirstIsRecognised) {
-  const std::string lon_lat = "139.7500 35.6800 5 139.7501 35.6800 5 139.7501 35.6801 5 139.7500 35.6800 5";
+  const std::string lon_lat =
+      "139.7500 35.6800 5 139.7501 35.6800 5 139.7501 35.6801 5 139.7500 35.6800 5";
   const Reading reading =
-      read_text("a.gml", city_model(building("b", "<bldg:lod2MultiSurface><gml:MultiSurface "
-                                                  "srsName=\"EPSG:6697\">" +
-                                                      member(polygon("p", lon_lat)) +
-                                                      "</gml:MultiSurface></bldg:lod2MultiSurface>")));
+      read_text("a.gml", city_model(building("b",
+                                             "<bldg:lod2MultiSurface><gml:MultiSurface "
+                                             "srsName=\"EPSG:6697\">" +
+                                                 member(polygon("p", lon_lat)) +
+                                                 "</gml:MultiSurface></bldg:lod2MultiSurface>")));
   ASSERT_FALSE(reading.error) << reading.error->message;
   EXPECT_EQ(reading.selection.crs.id, "EPSG:6691");
 }
@@ -235,7 +238,8 @@ TEST(AxisOrder, ProjectedDataIsEastNorthUnlessOnlyTheOtherOrderIsPlausible) {
   // Helsinki: the registry says north, east; files say east, north.
   const Reading usual = read_text("a.gml", city_model(in_crs("b", "EPSG:3879", 25498756, 6674431)));
   EXPECT_EQ(usual.selection.origin, (Point3{25498756, 6674431, 0}));
-  const Reading turned = read_text("a.gml", city_model(in_crs("b", "EPSG:3879", 6674431, 25498756)));
+  const Reading turned =
+      read_text("a.gml", city_model(in_crs("b", "EPSG:3879", 6674431, 25498756)));
   EXPECT_EQ(turned.selection.origin, (Point3{25498756, 6674431, 0}));
 }
 

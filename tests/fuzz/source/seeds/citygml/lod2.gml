@@ -1,0 +1,9 @@
+<CityModel xmlns="http://www.opengis.net/citygml/2.0" xmlns:b="http://www.opengis.net/citygml/building/2.0" xmlns:gen="http://www.opengis.net/citygml/generics/2.0" xmlns:gml="http://www.opengis.net/gml" xmlns:xlink="http://www.w3.org/1999/xlink">
+<gml:boundedBy><gml:Envelope srsName="EPSG:25833" srsDimension="3"><gml:lowerCorner>0 0 0</gml:lowerCorner><gml:upperCorner>9 9 9</gml:upperCorner></gml:Envelope></gml:boundedBy>
+<cityObjectMember><b:Building gml:id="x"><gen:intAttribute name="n"><gen:value>7</gen:value></gen:intAttribute><b:measuredHeight>3.5</b:measuredHeight>
+<b:lod2Solid><gml:Solid><gml:exterior><gml:CompositeSurface><gml:surfaceMember xlink:href="#p"/><gml:surfaceMember><gml:OrientableSurface orientation="-"><gml:baseSurface xlink:href="#p"/></gml:OrientableSurface></gml:surfaceMember></gml:CompositeSurface></gml:exterior></gml:Solid></b:lod2Solid>
+<b:boundedBy><b:WallSurface gml:id="w"><b:lod2MultiSurface><gml:MultiSurface><gml:surfaceMember><gml:Polygon gml:id="p"><gml:exterior><gml:LinearRing><gml:posList>0 0 0 1 0 0 1 1 0 0 0 0</gml:posList></gml:LinearRing></gml:exterior><gml:interior><gml:LinearRing><gml:pos>0 0 0</gml:pos><gml:pos>1 0 0</gml:pos></gml:LinearRing></gml:interior></gml:Polygon></gml:surfaceMember></gml:MultiSurface></b:lod2MultiSurface><b:opening><b:Window/></b:opening></b:WallSurface></b:boundedBy>
+<b:consistsOfBuildingPart><b:BuildingPart><b:lod1MultiSurface><gml:MultiSurface><gml:surfaceMember xlink:href="#q"/></gml:MultiSurface></b:lod1MultiSurface></b:BuildingPart></b:consistsOfBuildingPart>
+</b:Building></cityObjectMember>
+<cityObjectMember><b:Building gml:id="y"><b:lod1MultiSurface><gml:MultiSurface gml:id="q"><gml:surfaceMember><gml:Polygon><gml:exterior><gml:LinearRing><gml:coordinates>0,0,0 1,0,0 1,1,0</gml:coordinates></gml:LinearRing></gml:exterior></gml:Polygon></gml:surfaceMember></gml:MultiSurface></b:lod1MultiSurface></b:Building></cityObjectMember>
+</CityModel>
