@@ -76,7 +76,9 @@ Result<void> print_file(const std::filesystem::path& path) {
 }
 
 int exit_code(const RunOutcome& outcome) {
-  return outcome.complete && outcome.invalid_buildings == 0 ? kDone : kDoneWithLosses;
+  // Only `validate` was asked for defects; an export has healed or dropped what it found.
+  const auto defects = outcome.report.process == kValidate && outcome.invalid_buildings > 0;
+  return outcome.complete && !defects ? kDone : kDoneWithLosses;
 }
 
 Result<RunOutcome> run_files(const RunArguments& arguments, const std::string& inputs,
