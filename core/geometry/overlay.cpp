@@ -164,6 +164,29 @@ Result<std::vector<Area>> simplify(std::span<const Area> areas, double tolerance
   return areas_of(geos, fewer.get());
 }
 
+Result<std::vector<Area>> smooth(std::span<const Area> areas, double width_m) {
+  constexpr double kMitreLimit = 5.0;
+  constexpr int kQuadrantSegments = 4;
+  Geos geos;
+  const GeometryPtr all = collection_of(geos, areas);
+  const auto buffered = [&](const GEOSGeometry* geometry, double width) {
+    return GeometryPtr{
+        GEOSBufferWithStyle_r(geos.handle(), geometry, width * kGridStepsPerMetre,
+                              kQuadrantSegments, GEOSBUF_CAP_FLAT, GEOSBUF_JOIN_MITRE, kMitreLimit),
+        Destroy{geos.handle()}};
+  };
+  const GeometryPtr wide = buffered(all.get(), width_m);
+  if (!wide) return geos.error("closing");
+  const GeometryPtr narrow = buffered(wide.get(), -2 * width_m);
+  if (!narrow) return geos.error("opening");
+  const GeometryPtr back = buffered(narrow.get(), width_m);
+  if (!back) return geos.error("opening");
+  const GeometryPtr gridded{GEOSUnaryUnionPrec_r(geos.handle(), back.get(), kPrecision),
+                            Destroy{geos.handle()}};
+  if (!gridded) return geos.error("rounding");
+  return areas_of(geos, gridded.get());
+}
+
 Area convex_hull(std::vector<GridPoint2> points) {
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());

@@ -32,6 +32,10 @@ Result<std::vector<Area>> subtract(std::span<const Area> minuend, std::span<cons
 /// Fewer corners, none moved or left out by more than `tolerance_m`; topology is kept.
 Result<std::vector<Area>> simplify(std::span<const Area> areas, double tolerance_m);
 
+/// Closes gaps and takes off slivers narrower than twice `width_m` (closing, then opening, mitred
+/// corners). Corners may move by about the width.
+Result<std::vector<Area>> smooth(std::span<const Area> areas, double width_m);
+
 /// The smallest convex area that holds all points (Andrew 1979); empty exterior when they lie on a
 /// line.
 Area convex_hull(std::vector<GridPoint2> points);

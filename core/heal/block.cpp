@@ -179,8 +179,11 @@ Blocks lod1_blocks(const Shell& shell, bool footprint_only,
       blocks.candidates.push_back(extrude(without_pinches(std::move(areas)), base, *top));
   };
   add(whole);
-  for (const double tolerance_m : kOutlines_m)
-    if (auto simpler = simplify(whole, tolerance_m)) add(std::move(*simpler));
+  for (const double tolerance_m : kOutlines_m) {
+    auto smoother = smooth(whole, tolerance_m);
+    if (!smoother) continue;
+    if (auto simpler = simplify(*smoother, tolerance_m)) add(std::move(*simpler));
+  }
   std::vector<GridPoint2> corners;
   for (const Area& area : whole)
     corners.insert(corners.end(), area.exterior.begin(), area.exterior.end());

@@ -34,6 +34,7 @@ constexpr std::array kHealSteps{
     HealStep{"orient_faces", orient_faces},
     HealStep{"close_holes", close_holes},
     HealStep{"orient_faces", orient_faces},
+    HealStep{"drop_double_triangles", drop_double_triangles},
 };
 
 /// Tolerances of rung `healed` after the one asked for, as long as they stay below the limit of
@@ -215,7 +216,8 @@ class Ladder {
         if (context_.stopped()) return false;
         Shell shell = input.shell;
         StepContext step{tolerance_m, std::max(options_.planarity_tolerance_m, tolerance_m), {}, 0};
-        // An opening in front of or behind its wall leaves the wall open: the wall is closed instead.
+        // An opening in front of or behind its wall leaves the wall open: the wall is closed
+        // instead.
         std::optional<Openings> openings;
         if (without_openings) {
           openings.emplace(shell);

@@ -43,6 +43,10 @@ void orient_faces(Shell& shell, StepContext& context);
 /// loops in one plane become holes of the new face.
 void close_holes(Shell& shell, StepContext& context);
 
+/// Where two faces lie on each other in the same triangles: an inner wall between touching volumes
+/// goes, of doubles one stays. Faces that lose triangles fall apart into the rest.
+void drop_double_triangles(Shell& shell, StepContext& context);
+
 /// Gives faces without a type one by their normal: up a roof, down a ground, else a wall.
 void type_faces(Shell& shell);
 

@@ -275,7 +275,7 @@ class Run {
         for (const OpenFormat& open : formats_)
           if (auto added = open.writer->add(*bodies); !added) return added.error();
       }
-      if (has_defects(building.report)) ++invalid_;
+      if (!exporting_ && has_defects(building.report)) ++invalid_;
       if (auto added = report_->add(building.report, bodies); !added) return added.error();
     }
     time("write", write_start);

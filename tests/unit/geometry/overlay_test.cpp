@@ -47,6 +47,16 @@ TEST(Overlay, SimplificationDropsCornersBelowTheTolerance) {
   EXPECT_EQ((*simpler)[0].exterior.size(), 4u);
 }
 
+TEST(Overlay, SmoothingClosesGapsAndTakesOffSlivers) {
+  const Area sliver{{{0, 0}, {90000, 0}, {90000, 50}, {0, 50}}, {}};
+  const auto closed = smooth(std::vector{square(0, 0, 100000), square(100050, 0, 100000)}, 0.01);
+  ASSERT_TRUE(closed);
+  EXPECT_EQ(closed->size(), 1u);
+  const auto gone = smooth(std::vector{sliver}, 0.01);
+  ASSERT_TRUE(gone);
+  EXPECT_TRUE(gone->empty());
+}
+
 TEST(Overlay, TheConvexHullHoldsAllPoints) {
   const Area hull = convex_hull({{0, 0}, {10, 0}, {5, 5}, {10, 10}, {0, 10}, {5, 0}, {10, 10}});
   EXPECT_EQ(hull.exterior.size(), 4u);

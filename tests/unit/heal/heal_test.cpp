@@ -171,6 +171,20 @@ TEST(Heal, DropsTheInnerWallOfTwoBlocks) {
   EXPECT_DOUBLE_EQ(volume_m3(healed), 480);
 }
 
+TEST(Heal, ATowerThatStandsInACornerOfItsPodiumBecomesOneVolume) {
+  // Two closed boxes side by side whose touching walls differ in height: the common part is an inner wall.
+  const auto podium = rectangle(0, 0, 10, 8), tower = rectangle(10, 0, 14, 8);
+  Draw draw;
+  draw.ground(podium).walls(podium, 4).flat_roof(podium, 4);
+  draw.ground(tower).walls(tower, 4).flat_roof(tower, 4);
+  // The tower goes on above: its roof at 4 m and the ground above it cancel out.
+  const auto above = rectangle(10, 0, 14, 8, 4);
+  draw.ground(above).walls(above, 20).flat_roof(above, 20);
+  const auto healed = heal(draw.done());
+  EXPECT_EQ(healed.rung, "healed");
+  EXPECT_DOUBLE_EQ(volume_m3(healed), 10 * 8 * 4 + 4 * 8 * 20);
+}
+
 TEST(Heal, AnOpeningInItsWallKeepsItsType) {
   const auto base = rectangle(0, 0, 10, 8);
   Draw draw;
