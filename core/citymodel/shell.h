@@ -14,6 +14,7 @@ struct Face {
       rings{};  ///< into Shell::points, not closed by a repeated corner; the first is the exterior
   SurfaceType type = SurfaceType::Unknown;
   std::uint32_t source = 0;  ///< index into Shell::surface_ids
+  bool added = false;        ///< not of the input: closes a hole
   bool cavity = false;       ///< of an interior shell: faces into the hollow
 };
 

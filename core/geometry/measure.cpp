@@ -110,33 +110,32 @@ double DistanceField::distance_m(const GridPoint& p) const {
   }
 }
 
-Deviation deviation(std::span<const GridPoint> points_a, std::span<const Triangle> triangles_a,
-                    std::span<const GridPoint> points_b, std::span<const Triangle> triangles_b) {
+Deviation deviation_to(std::span<const GridPoint> points, std::span<const Triangle> triangles,
+                       const DistanceField& other) {
   Deviation result;
   double sum = 0;
   std::uint64_t samples = 0;
-  const auto sample = [&](const GridPoint& p, const DistanceField& field) {
-    const double d = field.distance_m(p);
+  const auto sample = [&](const GridPoint& p) {
+    const double d = other.distance_m(p);
     if (!std::isfinite(d)) return;
     result.max_m = std::max(result.max_m, d);
     sum += d;
     ++samples;
   };
-  const auto one_way = [&](std::span<const GridPoint> points, std::span<const Triangle> triangles,
-                           const DistanceField& field) {
-    for (const Triangle& t : triangles) {
-      const GridPoint &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
-      for (const GridPoint& p : {a, b, c}) sample(p, field);
-      sample({(a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2}, field);
-      sample({(b.x + c.x) / 2, (b.y + c.y) / 2, (b.z + c.z) / 2}, field);
-      sample({(c.x + a.x) / 2, (c.y + a.y) / 2, (c.z + a.z) / 2}, field);
-      sample({(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3}, field);
-    }
-  };
-  one_way(points_a, triangles_a, DistanceField(points_b, triangles_b));
-  one_way(points_b, triangles_b, DistanceField(points_a, triangles_a));
+  for (const Triangle& t : triangles) {
+    const GridPoint &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
+    for (const GridPoint& p : {a, b, c}) sample(p);
+    sample({(a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2});
+    sample({(b.x + c.x) / 2, (b.y + c.y) / 2, (b.z + c.z) / 2});
+    sample({(c.x + a.x) / 2, (c.y + a.y) / 2, (c.z + a.z) / 2});
+    sample({(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3});
+  }
   if (samples > 0) result.mean_m = sum / static_cast<double>(samples);
   return result;
+}
+
+Deviation two_sided(const Deviation& a, const Deviation& b) {
+  return {std::max(a.max_m, b.max_m), (a.mean_m + b.mean_m) / 2};
 }
 
 }  // namespace citymesh

@@ -44,9 +44,11 @@ struct Deviation {
   double max_m = 0, mean_m = 0;
 };
 
-/// Distance between two surfaces in both directions, at their corners, edge middles and triangle
-/// centres.
-Deviation deviation(std::span<const GridPoint> points_a, std::span<const Triangle> triangles_a,
-                    std::span<const GridPoint> points_b, std::span<const Triangle> triangles_b);
+/// Distance from one surface to another, at the corners, edge middles and centres of its triangles.
+Deviation deviation_to(std::span<const GridPoint> points, std::span<const Triangle> triangles,
+                       const DistanceField& other);
+
+/// Both directions together: the larger maximum, the mean of the means.
+Deviation two_sided(const Deviation& a, const Deviation& b);
 
 }  // namespace citymesh

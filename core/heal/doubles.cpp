@@ -28,7 +28,11 @@ void drop_double_triangles(Shell& shell, StepContext& context) {
   }
   std::vector<std::vector<char>> gone(shell.faces.size());
   for (const auto& [key, copies] : owners) {
-    if (copies.size() < 2) continue;
+    // A face that closes a hole over an existing one closed the wrong hole: that is for the gate to
+    // refuse.
+    if (copies.size() < 2 || std::any_of(copies.begin(), copies.end(),
+                                         [&](const Owner& o) { return shell.faces[o.face].added; }))
+      continue;
     const auto even = static_cast<std::size_t>(
         std::count_if(copies.begin(), copies.end(), [](const Owner& o) { return o.even; }));
     const bool inner = 2 * even == copies.size();

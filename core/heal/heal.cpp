@@ -95,17 +95,23 @@ class Openings {
   std::vector<Opening> openings_;
 };
 
-struct Soup {
-  std::vector<Triangle> triangles{};
-};
-
 /// What of a shell can be triangulated, as a reference to measure from.
-Soup triangles_of(const Shell& shell) {
-  Soup soup;
-  for (const Face& face : shell.faces)
+std::vector<Triangle> triangles_of(const Shell& shell, bool with_added = true) {
+  std::vector<Triangle> all;
+  for (const Face& face : shell.faces) {
+    if (face.added && !with_added) continue;
     if (const auto triangles = triangulate(shell.points, face.rings))
-      soup.triangles.insert(soup.triangles.end(), triangles->begin(), triangles->end());
-  return soup;
+      all.insert(all.end(), triangles->begin(), triangles->end());
+  }
+  return all;
+}
+
+/// Two-sided distance; faces that close holes are no deviation, but what they cover is found there.
+Deviation deviation_between(const Shell& input, const Shell& result) {
+  const std::vector<Triangle> before = triangles_of(input), after = triangles_of(result);
+  return two_sided(deviation_to(input.points, before, DistanceField(result.points, after)),
+                   deviation_to(result.points, triangles_of(result, false),
+                                DistanceField(input.points, before)));
 }
 
 bool is_closed(const Shell& shell) {
@@ -119,7 +125,7 @@ bool is_closed(const Shell& shell) {
 std::string lane_of(const Shell& shell) {
   std::vector<std::array<GridPoint2, 3>> roofs;
   std::vector<GridBox> boxes;
-  for (const Triangle& t : triangles_of(shell).triangles) {
+  for (const Triangle& t : triangles_of(shell)) {
     const std::array<GridPoint2, 3> flat{project(shell.points[t[0]], Axis::Z),
                                          project(shell.points[t[1]], Axis::Z),
                                          project(shell.points[t[2]], Axis::Z)};
@@ -175,8 +181,7 @@ class Ladder {
         first = input;
         result_.issues = validate(input.shell, {options_.planarity_tolerance_m});
         if (is_closed(input.shell))
-          result_.volume_before_m3 =
-              volume_m3(input.shell.points, triangles_of(input.shell).triangles);
+          result_.volume_before_m3 = volume_m3(input.shell.points, triangles_of(input.shell));
       }
       if (geometry->footprint) continue;
       if (try_as_is(input) || try_healed(input)) return std::move(result_);
@@ -230,7 +235,7 @@ class Ladder {
         if (!gate_(shell).empty()) continue;
         result_.max_displacement_m = std::max(input.max_displacement_m, step.max_displacement_m);
         result_.repairs = std::move(step.repairs);
-        result_.deviation = {result_.max_displacement_m, 0};
+        result_.deviation = deviation_between(input.shell, shell);
         return deliver("healed", std::move(shell));
       }
     return false;
@@ -244,9 +249,7 @@ class Ladder {
     for (Shell& shell : blocks.candidates) {
       if (context_.stopped()) return false;
       if (!gate_(shell).empty()) continue;
-      const Soup before = triangles_of(input.shell), after = triangles_of(shell);
-      result_.deviation =
-          deviation(input.shell.points, before.triangles, shell.points, after.triangles);
+      result_.deviation = deviation_between(input.shell, shell);
       result_.repairs = {{"replaced_by_block", building_.gml_id, result_.deviation.max_m}};
       return deliver("lod1_block", std::move(shell));
     }

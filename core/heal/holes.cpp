@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "core/citymodel/edges.h"
 #include "core/geometry/measure.h"
@@ -122,6 +123,11 @@ void split_into_planar(const Shell& shell, Ring loop, double tolerance_m, std::v
   planar.push_back(std::move(loop));
 }
 
+Ring sorted(Ring ring) {
+  std::sort(ring.begin(), ring.end());
+  return ring;
+}
+
 bool inside(const Shell& shell, const Ring& ring, const GridPoint& point, Axis axis) {
   bool result = false;
   const GridPoint2 p = project(point, axis);
@@ -139,6 +145,11 @@ void close_holes(Shell& shell, StepContext& context) {
   std::vector<Ring> planar, rest;
   for (Ring& loop : free_loops(shell))
     split_into_planar(shell, std::move(loop), context.planarity_tolerance_m, planar, rest);
+
+  // A face that hangs free is no hole: closing its outline would only double it.
+  std::set<Ring> outlines;
+  for (const Face& face : shell.faces) outlines.insert(sorted(face.rings[0]));
+  std::erase_if(planar, [&](const Ring& loop) { return outlines.contains(sorted(loop)); });
 
   // A loop inside another one in the same plane, walked the other way round, is a hole of the
   // other's face: the courtyard of a missing ground.
@@ -172,6 +183,7 @@ void close_holes(Shell& shell, StepContext& context) {
     faces[i].type = planes[i].normal.z < -kGroundSlope ? SurfaceType::GroundSurface
                                                        : SurfaceType::ClosureSurface;
     context.note("hole_closed", describe(shell.points[planar[i][0]]));
+    faces[i].added = true;
     shell.faces.push_back(std::move(faces[i]));
   }
 }

@@ -97,16 +97,14 @@ void drop_duplicate_faces(Shell& shell, StepContext& context) {
   for (const auto& [corners, faces] : groups) {
     if (faces.size() < 2) continue;
     if (uses.empty()) uses = edge_uses(shell);
-    // An inner wall is one whose edges are closed without it.
-    std::size_t closed_without = 0, edges = 0;
+    // An inner wall is one whose edges pair up without it.
+    bool inner = true;
     for (const Ring& ring : shell.faces[faces[0]].rings)
       for (std::size_t i = 0; i < ring.size(); ++i) {
         const std::uint32_t a = ring[i], b = ring[(i + 1) % ring.size()];
-        const std::size_t all = uses[{std::min(a, b), std::max(a, b)}].size();
-        ++edges;
-        closed_without += all == faces.size() + 2 || all == faces.size() ? 1u : 0u;
+        const std::size_t others = uses[{std::min(a, b), std::max(a, b)}].size() - faces.size();
+        inner = inner && others % 2 == 0;
       }
-    const bool inner = closed_without == edges;
     for (std::size_t i = inner ? 0 : 1; i < faces.size(); ++i) {
       gone[faces[i]] = 1;
       context.note(inner ? "inner_face_dropped" : "duplicate_face_dropped",

@@ -172,7 +172,8 @@ TEST(Heal, DropsTheInnerWallOfTwoBlocks) {
 }
 
 TEST(Heal, ATowerThatStandsInACornerOfItsPodiumBecomesOneVolume) {
-  // Two closed boxes side by side whose touching walls differ in height: the common part is an inner wall.
+  // Two closed boxes side by side whose touching walls differ in height: the common part is an
+  // inner wall.
   const auto podium = rectangle(0, 0, 10, 8), tower = rectangle(10, 0, 14, 8);
   Draw draw;
   draw.ground(podium).walls(podium, 4).flat_roof(podium, 4);
