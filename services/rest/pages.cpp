@@ -160,7 +160,8 @@ std::string landing_page(std::string_view base) {
 
 std::string conformance_page(std::string_view base, std::string_view conformance_json) {
   std::string html = "<h1>Conformance classes</h1><ul>";
-  for (const auto& uri : nlohmann::json::parse(conformance_json)["conformsTo"])
+  const auto document = nlohmann::json::parse(conformance_json);
+  for (const auto& uri : document["conformsTo"])
     html += fmt::format("<li><code>{}</code></li>", escape_html(uri.get<std::string>()));
   return page(base, "Conformance", html + "</ul>");
 }

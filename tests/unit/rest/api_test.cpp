@@ -89,7 +89,8 @@ TEST_F(RestApi, LandingPageLinksWhatTheStandardAsksForWithAbsoluteUrls) {
 }
 
 TEST_F(RestApi, EveryLinkOfTheLandingPageResolves) {
-  for (const auto& link : document(get("/"))["links"]) {
+  const auto landing = document(get("/"));
+  for (const auto& link : landing["links"]) {
     const auto href = link["href"].get<std::string>();
     EXPECT_EQ(get(href.substr(std::string("http://citymesh.test:8080").size())).status, 200)
         << href;
