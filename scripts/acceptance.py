@@ -72,7 +72,9 @@ def body_names(path):
             if line.startswith("o "):
                 names[line[2:].strip()] = None
             elif line.startswith("solid "):
-                names[line[6:].strip().rpartition("__")[0]] = None
+                solid = line[6:].strip().rpartition("__")[0]
+            elif line.lstrip().startswith("facet"):
+                names[solid] = None  # a solid without facets is no body
     return list(names)
 
 

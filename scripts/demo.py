@@ -18,8 +18,8 @@ import urllib.error
 import urllib.request
 from pathlib import Path
 
-# Around Berlin Mitte, longitude and latitude: everything in tests/data/berlin.
-BBOX = [13.38, 52.49, 13.43, 52.53]
+# Berlin, south of Mitte, in longitude and latitude: a part of tests/data/berlin.
+BBOX = [13.393, 52.498, 13.411, 52.502]
 START_LIMIT_S = 60
 
 
@@ -77,6 +77,13 @@ class Server:
                 time.sleep(0.1)
         raise DemoError(f"the service was not ready after {START_LIMIT_S} s")
 
+    def ended(self):
+        """Its exit code (negative: the signal that killed it); None while it runs."""
+        try:
+            return self.process.wait(0.5)
+        except subprocess.TimeoutExpired:
+            return None
+
     def stop(self):
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGTERM)
@@ -91,13 +98,13 @@ class Server:
 
 
 class ProgressBar:
-    """One line that redraws itself on a terminal, and a line per stage elsewhere."""
+    """One line that redraws itself on a terminal; elsewhere a line per stage and fifth of the way."""
 
     WIDTH = 30
 
     def __init__(self):
         self.live = sys.stdout.isatty()
-        self.stage = None
+        self.shown = None
 
     def show(self, status):
         stage = status.get("stage") or status["status"]
@@ -108,9 +115,9 @@ class ProgressBar:
             line += f", {done} of {total} buildings"
         if self.live:
             print("\r" + line.ljust(90), end="", flush=True)
-        elif stage != self.stage:
+        elif (step := (stage, status.get("progress", 0) // 20)) != self.shown:
+            self.shown = step
             print(line, flush=True)
-        self.stage = stage
 
     def end(self):
         if self.live:
@@ -231,6 +238,8 @@ def main():
     except DemoError as error:
         print(f"\nerror: {error}", file=sys.stderr)
         if server:
+            if server.ended() not in (None, 0):
+                print(f"The service has ended with exit code {server.ended()}.", file=sys.stderr)
             print(f"The last lines of {server.log}:\n{server.log_tail()}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:

@@ -180,6 +180,10 @@ TEST(MeshCheckerStl, FindsABodyThatComesTwice) {
   EXPECT_THAT(check(bodies[2]), ElementsAre(HasSubstr("same name")));
 }
 
+TEST(MeshCheckerStl, TakesASolidWithoutFacetsForNothing) {
+  EXPECT_THAT(read_stl("solid empty\nendsolid empty\n"), IsEmpty());
+}
+
 TEST(MeshCheckerStl, RefusesWhatIsNoStl) {
   EXPECT_THROW(read_stl("hello\n"), ReadError);
   EXPECT_THROW(read_stl("solid a\n vertex nan 0 0\n"), ReadError);

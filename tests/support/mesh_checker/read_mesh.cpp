@@ -171,6 +171,7 @@ std::vector<Body> read_stl(std::string_view text) {
   std::vector<BodyBuilder> bodies;
   Lines lines(text);
   bool in_solid = false;
+  std::string_view name;
   std::array<Point, 3> corners{};
   std::size_t corner_count = 0;
   while (lines.next()) {
@@ -181,6 +182,7 @@ std::vector<Body> read_stl(std::string_view text) {
       corners[corner_count++] = lines.point();
     } else if (key == "endfacet") {
       if (corner_count != 3) lines.fail("facet with fewer than three corners");
+      if (bodies.empty() || bodies.back().name() != name) bodies.emplace_back(std::string(name));
       bodies.back().add(corners);
       corner_count = 0;
     } else if (key == "solid") {
@@ -188,8 +190,7 @@ std::vector<Body> read_stl(std::string_view text) {
       in_solid = true;
       const auto solid = lines.word();
       const auto separator = solid.rfind("__");
-      const auto name = separator == std::string_view::npos ? solid : solid.substr(0, separator);
-      if (bodies.empty() || bodies.back().name() != name) bodies.emplace_back(std::string(name));
+      name = separator == std::string_view::npos ? solid : solid.substr(0, separator);
     } else if (key == "endsolid") {
       if (!in_solid) lines.fail("endsolid without solid");
       in_solid = false;

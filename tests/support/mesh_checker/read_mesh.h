@@ -30,7 +30,8 @@ struct ReadError : std::runtime_error {
 /// does not begin with its body's name.
 std::vector<Body> read_obj(std::string_view text);
 
-/// ASCII STL. A body is a run of solids whose names agree in the part before the last `__`.
+/// ASCII STL. A body is a run of solids whose names agree in the part before the last `__`; a solid
+/// without facets is none, as an STL file must have a solid even when there is nothing to say.
 std::vector<Body> read_stl(std::string_view text);
 
 }  // namespace mesh_checker
