@@ -24,6 +24,7 @@ void add_selection(CLI::App& command, RunArguments& arguments) {
   command
       .add_option("--set", arguments.inputs.settings,
                   "an input of the process, name=value; `citymesh processes` lists them")
+      ->allow_extra_args(false)
       ->type_name("NAME=VALUE");
   command.add_option("--threads", arguments.threads, "threads to use; 0: one per core")
       ->check(CLI::Range(0u, 256u));
@@ -49,6 +50,7 @@ void add_run(CLI::App& program, RunArguments& arguments, int& code) {
       .add_option("--format", arguments.inputs.formats,
                   "formats to write, by comma; available: " + format_keys())
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("FORMAT");
   add_selection(command, arguments);
   command.callback([&] { code = run_command(arguments); });
@@ -122,7 +124,7 @@ int run_program(int argc, char** argv) {
       "citymesh turns 3D city models into closed, 2-manifold, simulation-ready meshes.",
       "citymesh"};
   program.set_version_flag("--version", "citymesh " + std::string(version()));
-  program.require_subcommand(1);
+  program.footer(kExitCodes);
   program.get_formatter()->column_width(34);
 
   int code = kDone;
@@ -140,6 +142,10 @@ int run_program(int argc, char** argv) {
     // Help and version are no errors; whatever else the command line gets wrong is one kind.
     return program.exit(error, std::cout, std::cerr) == 0 ? kDone : kCouldNotRun;
   }
+  if (program.get_subcommands().empty())
+    return could_not_run(fail(ErrorCode::InvalidArgument,
+                              "a subcommand is missing, expected one of run, validate, serve, "
+                              "processes; --help tells more"));
   return code;
 }
 

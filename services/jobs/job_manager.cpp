@@ -58,8 +58,6 @@ std::string with_requested_formats(const ProcessSpec& process, const JobSpec& sp
   return inputs.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-const std::vector<JobState> kOpenStates{JobState::Accepted, JobState::Running};
-
 }  // namespace
 
 JobManager::JobManager(JobStore& jobs, TaskQueue& queue, ResultStore& results,
@@ -94,7 +92,7 @@ Result<Job> JobManager::submit(JobSpec spec) {
 
   {
     const std::scoped_lock lock(submit_mutex_);
-    const auto open = jobs_.count({.states = kOpenStates});
+    const auto open = jobs_.count_open();
     if (!open) return open.error();
     if (*open >= options_.max_open_jobs)
       return fail(ErrorCode::ResourceExhausted,

@@ -27,6 +27,8 @@ class JobStore {
   /// How many jobs match; limit and offset of the filter do not count.
   virtual Result<std::uint64_t> count(const JobFilter& filter) = 0;
 
+  virtual Result<std::uint64_t> count_open() = 0;  ///< accepted and running; cheap
+
   /// Applies `change` to the stored job and stores it, unless the job is final already or `attempt`
   /// (when given) is no longer the job's attempt: then FailedPrecondition. A late worker can so
   /// never overwrite its successor.

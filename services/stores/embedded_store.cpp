@@ -301,7 +301,8 @@ Result<std::uint64_t> EmbeddedStore::recover() {
         " AND id NOT IN (SELECT job_id FROM task) ORDER BY created");
     auto query = writer.query(
         "UPDATE job SET state = 'accepted', message = 'queued again: the server stopped while it"
-        " ran', updated = max(updated + 1, ?1) WHERE state = 'running'");
+        " ran', stage = '', done = 0, total = 0, percent = 0, updated = max(updated + 1, ?1)"
+        " WHERE state = 'running'");
     query.bind(1, now_ms()).run();
     const auto count = writer.changed_rows();
     transaction.commit();
@@ -362,6 +363,14 @@ Result<std::uint64_t> EmbeddedStore::count(const JobFilter& filter) {
     auto row = connections_->reader.query("SELECT count(*)" CITYMESH_JOB_FILTER);
     row.bind(1, processes).bind(2, states).run();
     return static_cast<std::uint64_t>(row.number(0));
+  });
+}
+
+Result<std::uint64_t> EmbeddedStore::count_open() {
+  return guarded([&]() -> Result<std::uint64_t> {
+    const std::scoped_lock lock(connections_->reader_mutex);
+    return static_cast<std::uint64_t>(connections_->reader.value(
+        "SELECT count(*) FROM job WHERE state IN ('accepted', 'running')"));
   });
 }
 

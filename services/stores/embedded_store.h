@@ -35,6 +35,7 @@ class EmbeddedStore final : public JobStore, public TaskQueue {
   Result<Job> get(const std::string& id) override;
   Result<std::vector<Job>> list(const JobFilter& filter) override;
   Result<std::uint64_t> count(const JobFilter& filter) override;
+  Result<std::uint64_t> count_open() override;
   Result<Job> update(const std::string& id, std::optional<std::uint32_t> attempt,
                      const std::function<void(Job&)>& change) override;
   Result<void> set_progress(const std::string& id, std::uint32_t attempt,

@@ -7,10 +7,14 @@
 namespace citymesh {
 namespace {
 
-std::string replaced(std::string text, const std::string& what, const std::string& with) {
-  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
-    text.replace(at, what.size(), with);
-  return text;
+std::string replaced(const std::string& text, const std::string& what, const std::string& with) {
+  std::string result;
+  std::size_t from = 0;
+  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, from)) {
+    result.append(text, from, at - from).append(with);
+    from = at + what.size();
+  }
+  return result.append(text, from);
 }
 
 }  // namespace

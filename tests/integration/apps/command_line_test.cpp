@@ -39,11 +39,11 @@ Outcome export_to(const std::filesystem::path& folder, std::vector<std::string> 
 }
 
 TEST(CommandLine, HelpAndVersionAreOnStdoutEverywhere) {
-  for (const std::vector<std::string> arguments : {std::vector<std::string>{"--help"},
-                                                   {"run", "--help"},
-                                                   {"validate", "--help"},
-                                                   {"serve", "--help"},
-                                                   {"processes", "--help"}}) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
+                                                    {"run", "--help"},
+                                                    {"validate", "--help"},
+                                                    {"serve", "--help"},
+                                                    {"processes", "--help"}}) {
     const auto outcome = citymesh(arguments);
     EXPECT_EQ(outcome.code, 0);
     EXPECT_THAT(outcome.out, HasSubstr("--help"));
@@ -141,6 +141,12 @@ TEST(CommandLine, ValidatePrintsTheReportToStdout) {
   EXPECT_EQ(outcome.code, defects ? 1 : 0);
 }
 
+TEST(CommandLine, ASettingTakesOneValueAndLeavesTheFilesAlone) {
+  const auto outcome = citymesh({"validate", "--set", "lod=1", "--set", "crs=EPSG:25833", kTile});
+  ASSERT_LE(outcome.code, 1) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr(R"("lod":["1"])"));
+}
+
 TEST(CommandLine, AFullDiskIsAClearErrorThatLeavesNothingBehind) {
   const TempFolder folder;
   Program program("ulimit -f 16", {"run", "export-for-simulation", "--input", kTile, "--output",
@@ -152,7 +158,7 @@ TEST(CommandLine, AFullDiskIsAClearErrorThatLeavesNothingBehind) {
 
 TEST(CommandLine, CtrlCStopsCleanly) {
   const TempFolder folder;
-  make_big_city(folder / "city", 20);
+  make_big_city(folder / "city", 10);
   Program program({"run", "export-for-simulation", "--input", (folder / "city").string(),
                    "--output", (folder / "out").string()});
   // The output folder is made before the work starts.

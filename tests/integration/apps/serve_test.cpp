@@ -113,7 +113,7 @@ class Server {
 
 class ServeTest : public testing::Test {
  protected:
-  ServeTest() { make_big_city(folder_ / "city", 20); }
+  ServeTest() { make_big_city(folder_ / "city", 10); }
 
   TempFolder folder_;
 };

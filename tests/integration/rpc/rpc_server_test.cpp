@@ -166,7 +166,9 @@ TEST_F(RpcServerTest, AClientThatLeavesFreesItsWatch) {
       const auto read = reader->Read(&job);
       context.TryCancel();
       status = reader->Finish();
-      if (read) EXPECT_EQ(status.error_code(), grpc::StatusCode::CANCELLED);
+      if (read) {
+        EXPECT_EQ(status.error_code(), grpc::StatusCode::CANCELLED);
+      }
     } while (status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED);
   }
 }

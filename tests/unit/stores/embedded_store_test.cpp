@@ -139,6 +139,9 @@ TEST_F(EmbeddedStoreTest, ListsNewestFirstByProcessStateAndPage) {
   ASSERT_EQ(running->size(), 1u);
   EXPECT_EQ(*store_->count({.states = {JobState::Accepted}}), 3u);
   EXPECT_EQ(*store_->count({.processes = {"validate"}, .limit = 0}), 1u);
+  EXPECT_EQ(*store_->count_open(), 4u);
+  ASSERT_TRUE(store_->update(other.id, {}, [](Job& job) { job.state = JobState::Failed; }));
+  EXPECT_EQ(*store_->count_open(), 3u);
 }
 
 TEST_F(EmbeddedStoreTest, ErasesAJobWithItsTask) {
@@ -320,12 +323,15 @@ TEST_F(EmbeddedStoreTest, RecoveryEndsLeasesAndQueuesWhatAKilledProcessLeft) {
   const auto claim = claimed();
   ASSERT_TRUE(
       store_->update(running.id, claim.attempt, [](Job& j) { j.state = JobState::Running; }));
+  ASSERT_TRUE(store_->set_progress(running.id, claim.attempt, {"heal", 1, 2}, "heal: 1 of 2", 50));
   const auto never_pushed = new_job();
   ASSERT_TRUE(store_->insert(never_pushed));
 
   store_ = reopened();
   EXPECT_EQ(*store_->recover(), 1u);
   EXPECT_EQ(store_->get(running.id)->state, JobState::Accepted);
+  EXPECT_EQ(store_->get(running.id)->progress.done, 0u);
+  EXPECT_EQ(store_->get(running.id)->percent, 0);
   EXPECT_EQ(claimed().job_id, running.id);
   EXPECT_EQ(claimed().job_id, never_pushed.id);
 }

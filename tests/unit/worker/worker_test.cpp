@@ -236,10 +236,10 @@ TEST_F(WorkerTest, ShutdownHandsTheJobBackAndTheNextPoolFinishesIt) {
 TEST_F(WorkerTest, HeartbeatsKeepALongJobOfAShortLease) {
   work_on(
       [](const RunContext&) -> Result<void> {
-        std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+        std::this_thread::sleep_for(std::chrono::seconds(4));
         return {};
       },
-      {.workers = 2, .lease_ms = 600});
+      {.workers = 2, .lease_ms = 2500});
   const auto job = ended(submitted());
   EXPECT_EQ(job.state, JobState::Successful);
   EXPECT_EQ(job.attempt, 1u);
