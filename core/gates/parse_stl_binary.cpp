@@ -60,7 +60,7 @@ Result<void> read_patches(simdjson::ondemand::document& sidecar, std::uint64_t t
   for (simdjson::ondemand::object patch : sidecar["patches"].get_array()) {
     std::string body_name;
     auto named = patch["body"];
-    if (!named.error()) body_name = std::string_view(named.get_string());
+    if (named.error() != simdjson::NO_SUCH_FIELD) body_name = std::string_view(named.get_string());
     const std::string type(std::string_view(patch["surface_type"].get_string()));
     const std::uint64_t first = patch["first_triangle"].get_uint64();
     const std::uint64_t count = patch["triangle_count"].get_uint64();

@@ -68,7 +68,7 @@ td small.bad{color:var(--bad)}
 .rung.dropped{background:transparent;color:var(--bad);border:1px solid currentColor}
 .rung.merged{background:transparent;color:var(--soft);border:1px solid currentColor}
 .issue{display:inline-block;margin:0 6px 3px 0;padding:1px 7px;border-radius:6px;background:var(--chip);
-text-decoration:none;cursor:help;white-space:nowrap;font-size:12.5px}
+text-decoration:none;cursor:help;font-size:12.5px}
 .issue b{font-weight:650}
 tbody tr:hover .issue{background:var(--card)}
 footer{color:var(--soft);font-size:13px;max-width:1240px;margin:0 auto;padding:6px 24px 44px}

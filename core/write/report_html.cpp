@@ -356,7 +356,7 @@ void append_page_head(std::string& html, const RunReport& report, const ReportFi
       "type=\"checkbox\" id=\"defects\"> with defects</label><output "
       "id=\"shown\"></output></div>\n<div class=\"scroll\"><table id=\"buildings\"><thead><tr>"
       "<th><button>Building</button></th><th><button>Outcome</button></th>"
-      "<th><button>LoD</button></th><th><button>Defects in the source</button></th>"
+      "<th><button>LoD, lane</button></th><th><button>Defects in the source</button></th>"
       "<th class=\"num\"><button>Moved (m)</button></th><th class=\"num\"><button>Volume "
       "(m³)</button></th><th class=\"num\"><button>Triangles</button></th></tr></thead><tbody>\n";
 }
@@ -384,7 +384,7 @@ void append_row(std::string& html, const BuildingReport& building) {
   if (!building.merged_into.empty())
     html += "<small>into " + escaped(building.merged_into) + "</small>";
   html += "</td><td>" + escaped(building.lod);
-  if (!building.lane.empty()) html += "<small>" + escaped(building.lane) + "</small>";
+  if (!building.lane.empty()) html += " <span class=\"none\">" + escaped(building.lane) + "</span>";
   html += "</td><td>";
   for (const IssueGroup& group : groups) {
     const std::string code = issue_code_text(group.code);

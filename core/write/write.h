@@ -37,14 +37,18 @@ struct Scene {
   Patches patches = Patches::ByObject;
 };
 
-/// An incremental sink for one file. Memory is bounded by a building.
+/// An incremental sink for one file. Memory is bounded by a building; CityJSON also keeps the ids
+/// it used. The file appears under its name when it is complete; an abandoned writer leaves
+/// nothing. Origin, CRS, unit and axes stand in the header of OBJ, in the sidecar (shortened: in
+/// the header) of binary STL and in the metadata of CityJSON; ASCII STL has no place for them,
+/// report.json has.
 class BodyWriter {
  public:
   virtual ~BodyWriter() = default;
 
-  /// The text of one building as it would stand in a file of its own (complete and readable). No
-  /// side effects; may be called from several threads. Errors: FailedPrecondition when the format
-  /// cannot hold the coordinates.
+  /// The text of one building as it would stand in a file of its own (complete and readable; a
+  /// sidecar follows the text). No side effects; may be called from several threads. Errors:
+  /// FailedPrecondition when the format cannot hold the coordinates.
   virtual Result<std::string> encode(const BuildingBodies& building) const = 0;
 
   virtual Result<void> add(const BuildingBodies& building) = 0;
@@ -57,7 +61,8 @@ Result<std::unique_ptr<BodyWriter>> open_writer(const Format& format,
                                                 const std::filesystem::path& folder,
                                                 const Scene& scene);
 
-/// report.json, report.html, picture.svg: fed building by building, completed by the totals.
+/// report.json, report.html, picture.svg: fed building by building, completed by the totals. Memory
+/// is bounded: the page has the first 5,000 buildings, the picture draws large cities as blocks.
 class ReportWriter {
  public:
   static Result<std::unique_ptr<ReportWriter>> create(const std::filesystem::path& folder,

@@ -112,6 +112,33 @@ TEST_P(EveryFormat, EncodesOneBuildingAsACompleteDocument) {
   EXPECT_EQ(triangles_of(bodies[0]), triangles_of(house.bodies[0].mesh));
 }
 
+TEST_P(EveryFormat, IsReadWithoutACrashWhateverByteIsWrong) {
+  const std::string whole = encode(GetParam(), test::building("b_1", test::house(10, 8, 5, 9)));
+  std::uint32_t state = 7;
+  const auto random = [&state](std::size_t below) {
+    state = static_cast<std::uint32_t>(static_cast<std::uint64_t>(state) * 48271 % 2147483647);
+    return state % below;
+  };
+  constexpr std::string_view kWrong = "0123456789-.eE+ \n\t\"[]{}:,/abfgosvx_\\\xFF\x01";
+  for (int round = 0; round < 3000; ++round) {
+    std::string text = whole;
+    for (std::size_t n = random(3) + 1; n > 0; --n) {
+      const std::size_t at = random(text.size());
+      if (random(4) == 0) {
+        text.erase(at, random(20) + 1);
+      } else {
+        text[at] = kWrong[random(kWrong.size())];
+      }
+    }
+    const auto parsed = parse_text(GetParam(), text, [](ParsedBody&& body) {
+      const auto welded = weld(body);
+      EXPECT_TRUE(!welded || welded->triangles.size() == body.triangles.size());
+      return Result<void>{};
+    });
+    EXPECT_TRUE(parsed || parsed.error().code == ErrorCode::DataLoss);
+  }
+}
+
 TEST_P(EveryFormat, IsCompleteAndReadableWithoutAnyBuilding) {
   test::TemporaryFolder folder;
   write_scene(folder.path(), GetParam(), {});
