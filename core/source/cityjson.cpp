@@ -18,8 +18,6 @@ namespace {
 
 namespace dom = simdjson::dom;
 
-constexpr std::size_t kNoObject = static_cast<std::size_t>(-1);
-
 void note_failure(DocumentFacts& facts, std::string reason) {
   if (facts.failure.empty()) facts.failure = std::move(reason);
 }

@@ -35,9 +35,12 @@ struct BuildingQuery {
 
 /// The frame and the extent of a selection, found before the first building is read.
 struct Selection {
-  Crs crs{};        ///< working CRS: projected, metres
-  Point3 origin{};  ///< whole metres, from the declared extent or the request's box, never from the
-                    ///< features found
+  Crs crs{};  ///< working CRS: projected, metres
+  /// Whole metres (floored), never from the features found. With a box: its centre, z 0. Else the
+  /// lower corner of the extents that the files declare; a file that declares none, or one that its
+  /// buildings contradict, counts with the extent of all its buildings, those further than 200 km
+  /// from their median left out. Points beyond 214 km of it are issue C105.
+  Point3 origin{};
   std::uint64_t buildings = 0;        ///< top-level buildings that `read` will deliver
   std::vector<InputReport> inputs{};  ///< one per file or store, in reading order
   std::vector<std::string> warnings{};
@@ -79,8 +82,11 @@ struct FileSourceOptions {
   Crs assume_crs{};  ///< for files that state none
 };
 
-/// CityGML and CityJSON files (also .gz), found by content, not by name. Directories are searched
-/// one level deep. Errors: NotFound for a path that does not exist, PermissionDenied for one that
+/// CityGML 1.0, 2.0, 3.0 and CityJSON(Seq) 1.0, 1.1, 2.0 files (also .gz), found by content, not by
+/// name. Directories are searched one level deep, in the order of names; what is no city model in
+/// them is passed over with a warning. What a first pass finds is kept until the file changes.
+/// Files that state no CRS are taken to be in the query's `crs` when it names one. Thread-safe.
+/// Errors: NotFound for a path that does not exist, PermissionDenied for one that
 /// cannot be read.
 Result<std::unique_ptr<CitySource>> open_files(std::vector<std::filesystem::path> paths,
                                                FileSourceOptions options);
