@@ -35,7 +35,7 @@ Json operation(std::string_view id, std::string_view tag, std::string_view summa
                Json responses) {
   Json described = {{"operationId", id}, {"tags", Json::array({tag})}, {"summary", summary}};
   if (!parameters.empty()) described["parameters"] = std::move(parameters);
-  responses["default"] = ref("responses", "Problem");
+  for (const auto* wrong : {"4XX", "5XX"}) responses[wrong] = ref("responses", "Problem");
   described["responses"] = std::move(responses);
   return described;
 }
@@ -276,6 +276,7 @@ std::string openapi_json(std::string_view server_url) {
         {"license",
          {{"name", "GPL-3.0-or-later"}, {"url", "https://www.gnu.org/licenses/gpl-3.0.html"}}}}},
       {"servers", Json::array({Json{{"url", server_url}}})},
+      {"security", Json::array()},
       {"tags", Json::array({Json{{"name", "Service"}, {"description", "What is here"}},
                             Json{{"name", "Processes"}, {"description", "What can be done"}},
                             Json{{"name", "Jobs"}, {"description", "What is being done"}},
