@@ -2,7 +2,7 @@
 # Everything is built under build/, results go to out/. Nothing outside is touched but missing Debian packages.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help demo serve build test acceptance bench fuzz format format-check tidy clean install-build install-test install-check
+.PHONY: help demo serve build test acceptance bench tools fuzz format format-check tidy clean install-build install-test install-check
 
 JOBS  ?= $(shell nproc)
 TESTS ?= .*
@@ -29,14 +29,16 @@ test: install-build install-test ## build with sanitizers and run all tests; TES
 	@cmake --build --preset dev --parallel $(JOBS)
 	@ctest --preset dev --parallel $(JOBS) -R '$(TESTS)'
 
-acceptance: build install-test ## every file with a known building count, each delivered body re-read by the checker
-	@cmake --preset release -DCITYMESH_TESTS=ON >build/.configure.log 2>&1 || { cat build/.configure.log >&2; exit 1; }
-	@cmake --build --preset release --parallel $(JOBS) --target citymesh citymesh_mesh_checker
-	@python3 scripts/acceptance.py --program build/release/services/apps/citymesh \
-	  --checker build/release/tests/support/mesh_checker/citymesh_mesh_checker
+acceptance: tools ## every file with a known building count, each delivered body re-read by the checker
+	@python3 scripts/acceptance.py --program build/tools/services/apps/citymesh \
+	  --checker build/tools/tests/support/mesh_checker/citymesh_mesh_checker
 
-bench: build install-test ## reading and meshing speed, growth and memory on 10 and 100 MB of tiled real data
-	@python3 scripts/bench.py --build build/release
+bench: tools ## reading and meshing speed, growth and memory on 10 and 100 MB of tiled real data
+	@python3 scripts/bench.py --build build/tools
+
+tools: install-build install-test
+	@cmake --preset tools >build/.configure.log 2>&1 || { cat build/.configure.log >&2; exit 1; }
+	@cmake --build --preset tools --parallel $(JOBS) --target citymesh citymesh_mesh_checker read_throughput
 
 fuzz: install-build install-check ## every parser under libFuzzer, SECONDS_EACH=60
 	@cmake --preset fuzz >build/.configure.log 2>&1 || { cat build/.configure.log >&2; exit 1; }

@@ -57,7 +57,7 @@ def buildings_in(path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=Path, default=ROOT / "build/release")
+    parser.add_argument("--build", type=Path, default=ROOT / "build/tools")
     parser.add_argument("--source", default=ROOT / "tests/data/berlin/3910_5817.gml")
     parser.add_argument("--sizes", default="10,100", help="megabytes")
     parser.add_argument("--runs", type=int, default=5)
@@ -66,24 +66,23 @@ def main():
     arguments = parser.parse_args()
     arguments.folder.mkdir(parents=True, exist_ok=True)
     program = arguments.build / "services/apps/citymesh"
-    reader = next(iter(arguments.build.glob("tests/bench/source/bench_source*")), None)
+    reader = arguments.build / "tests/bench/source/read_throughput"
 
     print(f"Median of {arguments.runs}, one core, {Path(arguments.source).name} tiled\n")
-    print("| file | buildings | xmllint | reading | reading / xmllint | whole run | buildings/s | peak memory |")
-    print("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |")
+    print("| file | buildings | xmllint | selecting | reading | reading / xmllint | whole run | buildings/s | peak memory |")
+    print("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |")
     whole = []
     for size in arguments.sizes.split(","):
         path = big_file(arguments.source, size, arguments.folder)
         buildings = buildings_in(path)
         megabytes = path.stat().st_size / 1e6
         lint_s, _, _ = median_of(arguments.runs, ["xmllint", "--stream", "--noout", "--huge", path], arguments.core)
-        reading = ratio = "-"
-        if reader and os.access(reader, os.X_OK):
-            # The program prints the seconds of its best-known measure itself: parse to city model, without start-up.
-            text = measured([reader, path, str(arguments.runs)], arguments.core)[2]
-            found = re.search(r"([0-9.]+) s\b", text)
-            if found:
-                reading, ratio = f"{float(found[1]):.2f} s", f"{float(found[1]) / lint_s:.2f}"
+        select = reading = ratio = "-"
+        if reader.exists():
+            # It prints the two passes of a source: finding the selection, and parsing it to a city model.
+            text = measured([reader, path, arguments.runs], arguments.core)[2]
+            select_s, read_s = (float(re.search(rf"^{name} +([0-9.]+) s", text, re.MULTILINE)[1]) for name in ("select", "read"))
+            select, reading, ratio = f"{select_s:.2f} s", f"{read_s:.2f} s", f"{read_s / lint_s:.2f}"
         out = Path(tempfile.mkdtemp(prefix="citymesh-bench-"))
         seconds, peaks = [], []
         try:
@@ -97,7 +96,7 @@ def main():
             shutil.rmtree(out)
         run_s = statistics.median(seconds)
         whole.append((megabytes, run_s))
-        print(f"| {path.name}, {megabytes:.0f} MB | {buildings} | {lint_s:.2f} s | {reading} | {ratio} | {run_s:.2f} s | "
+        print(f"| {path.name}, {megabytes:.0f} MB | {buildings} | {lint_s:.2f} s | {select} | {reading} | {ratio} | {run_s:.2f} s | "
               f"{buildings / run_s:.0f} | {max(peaks):.0f} MB |", flush=True)
     if len(whole) > 1:
         (small, small_s), (large, large_s) = whole[0], whole[-1]
