@@ -15,11 +15,13 @@ set(CMAKE_CXX_FLAGS_DEBUG "-O1 -g1 -D_GLIBCXX_ASSERTIONS")
 # Geometry gives the same answer on every machine: no fused multiply-add, never fast-math.
 add_compile_options(-ffp-contract=off)
 
-# The sloppiness is what precompiled headers ask for; it looks at contents, not at times.
+# The sloppiness is what precompiled headers ask for; it looks at contents, not at times. Paths are taken relative to the
+# source tree, so that a fresh clone of the same sources finds what another one compiled.
 find_program(CCACHE ccache)
 if(CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
-      CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${CCACHE})
+      CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+      CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${CCACHE})
 endif()
 find_program(MOLD mold)
 if(MOLD)

@@ -66,7 +66,8 @@ struct RunReport {
   std::vector<std::pair<std::string, std::uint64_t>>
       drop_reasons{};  ///< histogram over dropped buildings
   std::uint64_t bodies = 0, points = 0, triangles = 0;
-  std::optional<std::uint64_t> contacts{};  ///< pairs of bodies that touch or overlap; none: not counted
+  std::optional<std::uint64_t>
+      contacts{};  ///< pairs of bodies that touch or overlap; none: not counted
   double volume_m3 = 0, area_m2 = 0;
   double min_edge_m = 0, min_angle_deg = 0;
   Box3 extent{};  ///< of what was delivered, relative to `origin`

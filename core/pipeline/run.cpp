@@ -299,7 +299,8 @@ class Run {
     start = context_.now();
     context_.report({"gates", done_, done_});
     for (const OpenFormat& open : formats_) {
-      const bool by_type = open.format->key.starts_with("stl") && inputs_.patches == Patches::ByType;
+      const bool by_type =
+          open.format->key.starts_with("stl") && inputs_.patches == Patches::ByType;
       auto checked =
           manifest_.check(open.format->key, folder_ / open.format->file_name, by_type, context_);
       if (!checked) return checked.error();
