@@ -46,7 +46,8 @@ Json status_document(std::string_view base, const Job& job) {
   if (job.started) status["started"] = rfc3339(*job.started);
   if (job.finished) status["finished"] = rfc3339(*job.finished);
   status["updated"] = rfc3339(job.updated);
-  if (!job.progress.stage.empty()) status["stage"] = job.progress.stage;
+  if (!job.progress.stage.empty() && job.state != JobState::Successful)
+    status["stage"] = job.progress.stage;
   if (job.progress.total > 0) {
     status["done"] = job.progress.done;
     status["total"] = job.progress.total;

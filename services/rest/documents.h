@@ -14,8 +14,8 @@ namespace citymesh {
 std::string landing_json(std::string_view base);
 std::string conformance_json();
 
-/// statusInfo with 1.0's field names; beside them `stage`, `done`, `total`, and `exception` when
-/// failed.
+/// statusInfo with 1.0's field names; beside them `stage` (until successful), `done`, `total`,
+/// and `exception` when failed.
 std::string status_json(std::string_view base, const Job& job);
 
 /// `self` and `next` are complete URLs; `next` may be empty.

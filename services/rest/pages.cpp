@@ -216,7 +216,8 @@ std::string job_page(std::string_view base, const Job& job) {
   std::string rows = row("Job", fmt::format("<code>{}</code>", escape_html(job.id)));
   rows += row("Status", badge(job.state));
   rows += row("Message", escape_html(job.message));
-  if (!job.progress.stage.empty()) rows += row("Stage", escape_html(job.progress.stage));
+  if (!job.progress.stage.empty() && job.state != JobState::Successful)
+    rows += row("Stage", escape_html(job.progress.stage));
   if (job.progress.total > 0)
     rows += row("Buildings", fmt::format("{} of {}", job.progress.done, job.progress.total));
   rows += row("Created", rfc3339(job.created));
