@@ -42,7 +42,7 @@ tools: install-build install-test
 
 fuzz: install-build install-check ## every parser under libFuzzer, SECONDS_EACH=60
 	@cmake --preset fuzz >build/.configure.log 2>&1 || { cat build/.configure.log >&2; exit 1; }
-	@cmake --build --preset fuzz --parallel $(JOBS)
+	@cmake --build --preset fuzz --parallel $(JOBS) --target citymesh_fuzzers
 	@scripts/fuzz.sh build/fuzz $(or $(SECONDS_EACH),60)
 
 format: install-check ## clang-format over our sources

@@ -7,6 +7,7 @@ set(CITYMESH_TEST_KINDS "support;architecture;unit;codes;golden;property;fuzz;in
 # Rooms whose code runs on several threads: their tests carry the label `threads` too and run under the thread sanitizer.
 set(citymesh_threaded_rooms jobs stores worker pipeline)
 add_custom_target(citymesh_thread_tests)
+add_custom_target(citymesh_fuzzers)
 
 citymesh_precompiled(gtest LIBRARIES GTest::gtest GTest::gmock
   HEADERS <gtest/gtest.h> <gmock/gmock.h> <algorithm> <filesystem> <fstream> <map> <sstream> <string> <vector>)
@@ -37,6 +38,7 @@ endfunction()
 function(citymesh_fuzz name)
   cmake_parse_arguments(ARG "" "" "SOURCES;USES;PRIVATE_USES;CORPUS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
+  add_dependencies(citymesh_fuzzers ${name})
   list(TRANSFORM ARG_USES PREPEND citymesh_)
   target_link_libraries(${name} PRIVATE ${ARG_USES} ${ARG_PRIVATE_USES} citymesh_warnings)
   if(CITYMESH_SANITIZE STREQUAL "fuzzer")

@@ -28,17 +28,18 @@ def big_file(source, megabytes, folder):
 
 def measured(command, core):
     """(seconds, peak MB, standard output) of a child pinned to one core."""
-    with tempfile.TemporaryFile() as output:
+    with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
         started = time.monotonic()
-        child = subprocess.Popen([str(word) for word in command], stdout=output, stdin=subprocess.DEVNULL,
+        child = subprocess.Popen([str(word) for word in command], stdout=output, stderr=errors, stdin=subprocess.DEVNULL,
                                  preexec_fn=lambda: os.sched_setaffinity(0, {core}))
         _, status, usage = os.wait4(child.pid, 0)
         seconds = time.monotonic() - started
         child.returncode = os.waitstatus_to_exitcode(status)
         output.seek(0)
         text = output.read().decode(errors="replace")
-    if child.returncode not in (0, 1):
-        raise SystemExit(f"exit code {child.returncode}: {' '.join(map(str, command))}")
+        if child.returncode not in (0, 1):
+            errors.seek(0)
+            raise SystemExit(f"exit code {child.returncode}: {' '.join(map(str, command))}\n{errors.read().decode(errors='replace')}")
     return seconds, usage.ru_maxrss / 1024, text
 
 
