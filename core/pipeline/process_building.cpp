@@ -84,6 +84,7 @@ class RoundTripGate {
     bool judged = false;
     for (const OpenFormat& open : formats_) {
       auto text = open.writer->encode(building);
+      if (!text && text.error().code == ErrorCode::FailedPrecondition) refused_ = text.error();
       auto body = text ? read_back(open.format->key, *text) : Result<WeldedBody>(text.error());
       if (!body) {
         issues.push_back({issue_code::kEncodingLoss, body.error().message, 0});
@@ -106,14 +107,19 @@ class RoundTripGate {
 
   TriangleMesh take_mesh() { return std::move(mesh_); }
 
+  /// A format that cannot hold such coordinates at all, whatever the rung.
+  const std::optional<Error>& refused() const { return refused_; }
+
  private:
   const std::vector<OpenFormat>& formats_;
   TriangleMesh mesh_;
+  std::optional<Error> refused_;
 };
 
 struct ProcessedPart {
   PartReport report{};
   std::optional<Body> body{};
+  std::optional<Error> refused{};
 };
 
 ProcessedPart process_part(const Building& building, const std::string& name, const Inputs& inputs,
@@ -124,6 +130,7 @@ ProcessedPart process_part(const Building& building, const std::string& name, co
   Healed healed = heal(building, inputs.lod, options, std::ref(gate), context);
 
   ProcessedPart processed;
+  processed.refused = gate.refused();
   PartReport& report = processed.report;
   report.gml_id = building.gml_id;
   report.name = name;
@@ -212,6 +219,7 @@ ProcessedBuilding process_building(const NamedBuilding& named, const Inputs& inp
     ProcessedPart own = process_part(building, named.name, inputs, formats, context);
     const bool silent = own.report.reason == "no_geometry" && !building.parts.empty();
     static_cast<PartReport&>(report) = own.report;
+    processed.refused = own.refused;
     if (own.body) {
       bodies.push_back(std::move(*own.body));
       any_geometry = true;
@@ -225,6 +233,7 @@ ProcessedBuilding process_building(const NamedBuilding& named, const Inputs& inp
   for (std::size_t i = 0; i < building.parts.size(); ++i) {
     ProcessedPart part =
         process_part(building.parts[i], named.part_names[i], inputs, formats, context);
+    if (part.refused) processed.refused = part.refused;
     if (part.body) {
       add_up(report, part.report);
       bodies.push_back(std::move(*part.body));

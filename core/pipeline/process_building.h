@@ -31,6 +31,7 @@ struct NamedBuilding {
 struct ProcessedBuilding {
   BuildingReport report{};
   std::optional<BuildingBodies> bodies{};  ///< none when dropped
+  std::optional<Error> refused{};  ///< a format that cannot hold the building: the end of the run
 };
 
 /// Heals one building with its parts; every body passes the gates on its write-and-parse round trip

@@ -263,6 +263,8 @@ class Run {
     });
     if (context_.stopped()) return cancelled();
     time("heal", start);
+    for (const ProcessedBuilding& building : processed)
+      if (building.refused) return *building.refused;
 
     const double write_start = context_.now();
     for (std::size_t i = 0; i < batch.size(); ++i) {

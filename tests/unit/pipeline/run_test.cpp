@@ -142,6 +142,16 @@ TEST(Run, AnEmptyBoxIsASuccessWithAWarning) {
   EXPECT_THAT(outcome->report.warnings, ::testing::Not(IsEmpty()));
 }
 
+TEST(Run, BinaryStlBeyondItsRangeIsRefusedNamingAscii) {
+  Folder folder;
+  const auto outcome = run_on({data("berlin/3900_5819.gml"), data("berlin/3920_5820.gml")}, folder,
+                              R"({"formats":["stl_binary"]})");
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().code, ErrorCode::FailedPrecondition);
+  EXPECT_THAT(outcome.error().message, HasSubstr("ASCII"));
+  EXPECT_THAT(outcome.error().message, HasSubstr("1024"));
+}
+
 TEST(Run, ARepeatedIdKeepsTheFirst) {
   Folder folder;
   const auto outcome = run_on(
