@@ -3,6 +3,8 @@
 #include <array>
 #include <charconv>
 
+#include "core/base/text.h"
+
 namespace citymesh {
 namespace {
 
@@ -20,21 +22,6 @@ constexpr std::array<std::pair<SurfaceType, std::string_view>, 12> kSurfaceNames
     {SurfaceType::CeilingSurface, "CeilingSurface"},
     {SurfaceType::FloorSurface, "FloorSurface"},
 }};
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r\n";
-  const auto first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
-}
-
-template <class Number>
-std::optional<Number> whole_number_text(std::string_view text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 }  // namespace
 
@@ -56,10 +43,10 @@ std::string to_string(Lod lod) {
 
 std::optional<Lod> lod_from(std::string_view text) {
   const auto dot = text.find('.');
-  const auto major = whole_number_text<std::int8_t>(text.substr(0, dot));
+  const auto major = number_from<std::int8_t>(text.substr(0, dot));
   if (!major || *major < 0) return std::nullopt;
   if (dot == std::string_view::npos) return Lod{*major};
-  const auto minor = whole_number_text<std::int8_t>(text.substr(dot + 1));
+  const auto minor = number_from<std::int8_t>(text.substr(dot + 1));
   if (!minor || *minor < 0) return std::nullopt;
   return Lod{*major, *minor};
 }
@@ -70,7 +57,7 @@ std::optional<double> number_attribute(const Attributes& attributes, std::string
     if (const auto* number = std::get_if<double>(&value)) return *number;
     if (const auto* number = std::get_if<std::int64_t>(&value)) return static_cast<double>(*number);
     if (const auto* text = std::get_if<std::string>(&value))
-      return whole_number_text<double>(trimmed(*text));
+      return number_from<double>(trimmed(*text));
     return std::nullopt;
   }
   return std::nullopt;

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/text.h"
+
 namespace citymesh {
 namespace {
 
@@ -69,13 +71,6 @@ std::string lower(std::string_view text) {
 bool is_code(std::string_view text) {
   return !text.empty() && text.size() <= 9 &&
          std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
-}
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r\n";
-  const auto first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
 std::string_view after_last(std::string_view text, char separator) {

@@ -16,6 +16,8 @@ namespace citymesh {
 
 enum class OptionKind { Boolean, Integer, Number, Text, TextList, BoundingBox };
 
+std::string_view to_string(OptionKind kind);  ///< for people: "whole number", "list of texts"
+
 /// One line of the option table: feeds CLI help, JSON Schema, OpenAPI and docs.
 struct OptionSpec {
   std::string_view name;  ///< unit in the name: `snap_tolerance_m`

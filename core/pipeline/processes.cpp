@@ -97,6 +97,24 @@ const std::array kProcesses{
 
 }  // namespace
 
+std::string_view to_string(OptionKind kind) {
+  switch (kind) {
+    case OptionKind::Boolean:
+      return "true or false";
+    case OptionKind::Integer:
+      return "whole number";
+    case OptionKind::Number:
+      return "number";
+    case OptionKind::Text:
+      return "text";
+    case OptionKind::TextList:
+      return "list of texts";
+    case OptionKind::BoundingBox:
+      return "bounding box";
+  }
+  return "";
+}
+
 std::span<const ProcessSpec> processes() { return kProcesses; }
 
 const ProcessSpec* find_process(std::string_view id) {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/text.h"
 #include "core/citymodel/issue.h"
 #include "core/source/citygml_names.h"
 #include "core/source/citygml_shapes.h"
@@ -21,21 +22,6 @@ namespace {
 
 std::string_view view(const xmlChar* text) {
   return text ? std::string_view(reinterpret_cast<const char*>(text)) : std::string_view{};
-}
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r\n";
-  const auto first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
-}
-
-template <class Number>
-std::optional<Number> number(std::string_view text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 bool is_gap(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
@@ -755,11 +741,11 @@ void CityGmlParser::on_end() {
         const std::string_view value = trimmed(text_);
         if (value.empty()) return;
         if (name_ == "measuredHeight") {
-          if (const auto height = number<double>(value))
+          if (const auto height = number_from<double>(value))
             return add_attribute(frame.object, name_, *height);
         } else if (name_ == "storeysAboveGround" || name_ == "storeysBelowGround" ||
                    name_ == "yearOfConstruction" || name_ == "yearOfDemolition") {
-          if (const auto whole = number<std::int64_t>(value))
+          if (const auto whole = number_from<std::int64_t>(value))
             return add_attribute(frame.object, name_, *whole);
         }
         add_attribute(frame.object, name_, std::string(value));
@@ -776,17 +762,17 @@ void CityGmlParser::on_end() {
     case Ctx::Generic: {
       if (frame.tag == Tag::GenericSet || name_.empty()) return;
       if (frame.tag == Tag::GenericWhole) {
-        if (const auto whole = number<std::int64_t>(generic_value_))
+        if (const auto whole = number_from<std::int64_t>(generic_value_))
           return add_attribute(frame.object, name_, *whole);
       } else if (frame.tag == Tag::GenericNumber) {
-        if (const auto value = number<double>(generic_value_))
+        if (const auto value = number_from<double>(generic_value_))
           return add_attribute(frame.object, name_, *value);
       }
       return add_attribute(frame.object, name_, generic_value_);
     }
     case Ctx::HeightValue:
       capturing_ = false;
-      if (const auto height = number<double>(trimmed(text_)))
+      if (const auto height = number_from<double>(trimmed(text_)))
         if (!number_attribute(feature_.objects[static_cast<std::size_t>(frame.object)].attributes,
                               "measuredHeight"))
           add_attribute(frame.object, "measuredHeight", *height);

@@ -8,26 +8,8 @@
 namespace citymesh {
 namespace {
 
-std::string_view kind(const OptionSpec& option) {
-  switch (option.kind) {
-    case OptionKind::Boolean:
-      return "true or false";
-    case OptionKind::Integer:
-      return "whole number";
-    case OptionKind::Number:
-      return "number";
-    case OptionKind::Text:
-      return "text";
-    case OptionKind::TextList:
-      return "list of texts";
-    case OptionKind::BoundingBox:
-      return "box";
-  }
-  return "";
-}
-
 std::string values(const OptionSpec& option) {
-  std::string text(kind(option));
+  std::string text(to_string(option.kind));
   if (!option.choices.empty())
     text = fmt::format("{}{}", option.kind == OptionKind::TextList ? "list of " : "",
                        fmt::join(option.choices, " | "));

@@ -58,24 +58,6 @@ std::string row(std::string_view name, std::string_view html) {
   return fmt::format("<tr><th>{}</th><td>{}</td></tr>", escape_html(name), html);
 }
 
-std::string_view kind_text(OptionKind kind) {
-  switch (kind) {
-    case OptionKind::Boolean:
-      return "true or false";
-    case OptionKind::Integer:
-      return "whole number";
-    case OptionKind::Number:
-      return "number";
-    case OptionKind::Text:
-      return "text";
-    case OptionKind::TextList:
-      return "list of texts";
-    case OptionKind::BoundingBox:
-      return "bounding box";
-  }
-  return "";
-}
-
 std::string values_text(const OptionSpec& option) {
   if (!option.choices.empty()) return fmt::format("{}", fmt::join(option.choices, ", "));
   if (option.minimum < option.maximum)
@@ -185,7 +167,7 @@ std::string process_page(std::string_view base, const ProcessSpec& process) {
     html += fmt::format(
         "<tr><td><code>{}</code></td><td>{}</td><td><code>{}</code></td><td>{}</td><td>{}</td></"
         "tr>",
-        option.name, kind_text(option.kind),
+        option.name, to_string(option.kind),
         option.default_json == "null" ? "" : escape_html(option.default_json),
         escape_html(values_text(option)), escape_html(option.description));
   html += "</table><h2>Outputs</h2><table><tr><th>Name</th><th>Type</th><th>Meaning</th></tr>";

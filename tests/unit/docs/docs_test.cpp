@@ -58,24 +58,6 @@ std::map<std::string, Cells> table(const std::filesystem::path& page, const std:
   return rows;
 }
 
-std::string_view kind_name(OptionKind kind) {
-  switch (kind) {
-    case OptionKind::Boolean:
-      return "true or false";
-    case OptionKind::Integer:
-      return "whole number";
-    case OptionKind::Number:
-      return "number";
-    case OptionKind::Text:
-      return "text";
-    case OptionKind::TextList:
-      return "list of texts";
-    case OptionKind::BoundingBox:
-      return "bounding box";
-  }
-  return {};
-}
-
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.10g", value);
@@ -101,7 +83,7 @@ TEST(Docs, EveryProcessHasAPageWithItsInputsAndTheirDefaults) {
       const auto row = rows.find(std::string(option.name));
       ASSERT_NE(row, rows.end()) << page << " has no row for " << option.name;
       ASSERT_GE(row->second.size(), 5U) << option.name;
-      EXPECT_EQ(row->second[1], kind_name(option.kind)) << page << ", " << option.name;
+      EXPECT_EQ(row->second[1], to_string(option.kind)) << page << ", " << option.name;
       EXPECT_EQ(row->second[2], "`" + std::string(option.default_json) + "`")
           << page << ", " << option.name;
       EXPECT_EQ(row->second[3], values_of(option)) << page << ", " << option.name;
