@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <regex>
 #include <set>
 #include <thread>
 
@@ -56,11 +55,12 @@ class JobManagerTest : public testing::Test {
 };
 
 TEST(JobId, IsARandomUuidOfVersionFour) {
-  const std::regex uuid("[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}");
   std::set<std::string> ids;
   for (int i = 0; i < 1000; ++i) {
-    ids.insert(new_job_id());
-    EXPECT_TRUE(std::regex_match(*ids.begin(), uuid)) << *ids.begin();
+    const std::string id = new_job_id();
+    EXPECT_THAT(id, ::testing::MatchesRegex(
+                        "[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}"));
+    ids.insert(id);
   }
   EXPECT_EQ(ids.size(), 1000u);
 }
