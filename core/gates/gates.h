@@ -55,6 +55,10 @@ Result<void> parse_text(std::string_view format, std::string_view text, const Pa
 Result<void> parse_file(std::string_view format, const std::filesystem::path& file,
                         const ParsedBodySink& sink);
 
+/// G14 on what was read back: `named` bodies have a name that solvers can read,
+/// [A-Za-z][A-Za-z0-9_]*, and every triangle says which patch it belongs to.
+std::vector<GateFailure> check_labels(const ParsedBody& body, bool named);
+
 /// Snaps a parsed body to the grid and welds equal coordinates. Errors: DataLoss for coordinates
 /// that are not on the grid to within float32 rounding, or not finite.
 struct WeldedBody {

@@ -125,6 +125,10 @@ class Manifest {
     std::uint64_t sum = 0, count = 0;
     auto read = parse_file(format, file, [&](ParsedBody&& parsed) -> Result<void> {
       if (context.stopped()) return cancelled();
+      if (const auto labels = check_labels(parsed, named); !labels.empty())
+        return fail(ErrorCode::DataLoss,
+                    fmt::format("{}: body `{}` fails gate {}: {}", file.filename().string(),
+                                parsed.name, labels[0].gate, labels[0].where));
       auto body = weld(parsed);
       if (!body)
         return fail(ErrorCode::DataLoss, fmt::format("{}: body `{}`: {}", file.filename().string(),
@@ -314,6 +318,13 @@ class Run {
   Result<RunOutcome> conclude(const Selection& selection, double start) {
     RunOutcome outcome;
     outcome.report = totals_.finish();
+    const Counts& counts = outcome.report.counts;
+    if (counts.requested != selection.buildings ||
+        counts.requested != counts.delivered + counts.merged + counts.dropped)
+      return fail(
+          ErrorCode::DataLoss,
+          fmt::format("gate G16: {} buildings selected, but {} delivered, {} merged and {} dropped",
+                      selection.buildings, counts.delivered, counts.merged, counts.dropped));
     outcome.report.inputs = selection.inputs;
     outcome.report.warnings.insert(outcome.report.warnings.begin(), selection.warnings.begin(),
                                    selection.warnings.end());

@@ -148,6 +148,34 @@ TEST(Gates, CoordinatesBeyondTheGridFailG13) {
   EXPECT_THAT(failed(box({0, 0, 0}, {m, m, kGridLimit + 1})), Contains("G13"));
 }
 
+TEST(Gates, NamesThatSolversCannotReadFailG14) {
+  ParsedBody body;
+  body.triangles = {{0, 1, 2}};
+  body.patches = {"WallSurface"};
+  for (const char* good : {"b_1", "House", "x_9"}) {
+    body.name = good;
+    EXPECT_THAT(check_labels(body, true), IsEmpty()) << good;
+  }
+  for (const char* bad : {"", "1a", "_a", "a b", "a-b", "ä"}) {
+    body.name = bad;
+    EXPECT_THAT(check_labels(body, true), Not(IsEmpty())) << bad;
+    EXPECT_THAT(check_labels(body, false), IsEmpty()) << bad;
+  }
+}
+
+TEST(Gates, ATriangleWithoutAPatchFailsG14) {
+  ParsedBody body;
+  body.name = "house";
+  body.triangles = {{0, 1, 2}, {0, 2, 3}};
+  body.patches = {"WallSurface"};
+  ASSERT_EQ(check_labels(body, true).size(), 1u);
+  EXPECT_EQ(check_labels(body, true)[0].gate, "G14");
+  body.patches = {"WallSurface", ""};
+  EXPECT_EQ(check_labels(body, true).size(), 1u);
+  body.patches = {"WallSurface", "RoofSurface"};
+  EXPECT_THAT(check_labels(body, true), IsEmpty());
+}
+
 TEST(Gates, TheVerdictDoesNotDependOnThePlace) {
   for (const std::int64_t shift : {std::int64_t{0}, kGridLimit - 3 * m, -kGridLimit + m}) {
     auto shell = box({shift, shift, shift}, {shift + m, shift + m, shift + m});
