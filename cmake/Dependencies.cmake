@@ -7,6 +7,7 @@ find_package(simdjson CONFIG REQUIRED)         # CityJSON: bounded depth, fast
 find_package(PROJ CONFIG REQUIRED)             # coordinate reference systems
 find_package(fmt CONFIG REQUIRED)              # formatting (std::format is missing in g++ 12)
 find_package(PkgConfig REQUIRED)
+pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)  # .zip inputs; its CMake config names programs that are packaged apart
 find_library(GEOS_C_LIBRARY geos_c REQUIRED)   # planar overlay on a fixed grid, behind core/geometry/overlay.h
 find_path(GEOS_INCLUDE_DIR geos_c.h REQUIRED)
 add_library(geos_c INTERFACE)

@@ -35,6 +35,18 @@ std::optional<SurfaceType> surface_type_from(std::string_view name) {
   return std::nullopt;
 }
 
+std::string_view to_string(ObjectKind kind) {
+  switch (kind) {
+    case ObjectKind::Building:
+      return "Building";
+    case ObjectKind::BuildingPart:
+      return "BuildingPart";
+    case ObjectKind::BuildingInstallation:
+      return "BuildingInstallation";
+  }
+  return "";
+}
+
 std::string to_string(Lod lod) {
   std::string text = std::to_string(lod.major);
   if (lod.minor >= 0) text += "." + std::to_string(lod.minor);

@@ -86,15 +86,36 @@ struct Geometry {
 using AttributeValue = std::variant<bool, std::int64_t, double, std::string>;
 using Attributes = std::vector<std::pair<std::string, AttributeValue>>;  ///< in source order
 
-/// A Building or BuildingPart. Coordinates are in the working CRS, axes east, north, up, in metres
-/// relative to the origin that the source was asked for; rings are as they came.
+/// A postal address, by the parts that xAL and 3DCityDB tell apart; empty where the source has
+/// none.
+struct Address {
+  std::string street{};
+  std::string house_number{};
+  std::string po_box{};
+  std::string zip_code{};
+  std::string city{};
+  std::string state{};
+  std::string country{};
+  friend bool operator==(const Address&, const Address&) = default;
+};
+
+enum class ObjectKind : std::uint8_t { Building, BuildingPart, BuildingInstallation };
+
+std::string_view to_string(ObjectKind kind);
+
+/// A Building, BuildingPart or BuildingInstallation. Coordinates are in the working CRS, axes east,
+/// north, up, in metres relative to the origin that the source was asked for; rings are as they
+/// came.
 struct Building {
+  ObjectKind kind = ObjectKind::Building;
   std::string gml_id{};
-  std::string parent{};  ///< gml_id of the Building for a part, else empty
+  std::string parent{};  ///< gml_id of what a part or an installation belongs to, else empty
   std::vector<Surface> surfaces{};
   std::vector<Geometry> geometries{};
   Attributes attributes{};
+  std::vector<Address> addresses{};
   std::vector<Building> parts{};
+  std::vector<Building> installations{};  ///< outer ones, whether they will be used or not
   std::vector<Issue> source_issues{};  ///< what the reader found: dangling xlinks, unreadable rings
   std::uint32_t skipped_installations = 0;  ///< counted, not read
   std::uint32_t skipped_ade_elements = 0;

@@ -13,16 +13,18 @@ Meshed mesh(const Shell& shell) {
     const auto triangles = triangulate(shell.points, face.rings);
     if (!triangles)
       return Issue{face.rings.size() > 1 ? 201 : 104, shell.surface_ids[face.source], 0};
-    for (const Triangle& triangle : *triangles) {
-      Triangle compact{};
-      for (std::size_t i = 0; i < 3; ++i) {
-        std::uint32_t& index = index_of[triangle[i]];
+    Face& compact_face = result.faces.emplace_back(face);
+    for (Ring& ring : compact_face.rings)
+      for (std::uint32_t& corner : ring) {
+        std::uint32_t& index = index_of[corner];
         if (index == kUnused) {
           index = static_cast<std::uint32_t>(result.points.size());
-          result.points.push_back(shell.points[triangle[i]]);
+          result.points.push_back(shell.points[corner]);
         }
-        compact[i] = index;
+        corner = index;
       }
+    for (const Triangle& triangle : *triangles) {
+      const Triangle compact{index_of[triangle[0]], index_of[triangle[1]], index_of[triangle[2]]};
       result.triangles.push_back(compact);
       result.surface_types.push_back(face.type);
       result.source_surfaces.push_back(face.source);

@@ -156,9 +156,10 @@ ProcessedPart process_part(const Building& building, const std::string& name, co
   Body body;
   body.name = name;
   body.gml_id = building.gml_id;
-  body.is_part = !building.parent.empty();
+  body.kind = building.kind;
   body.lod = report.lod;
   body.attributes = building.attributes;
+  body.addresses = building.addresses;
   body.mesh = gate.take_mesh();
   report.volume_after_m3 = volume_m3(body.mesh.points, body.mesh.triangles);
   report.triangles = body.mesh.triangles.size();
@@ -248,8 +249,8 @@ ProcessedBuilding process_building(const NamedBuilding& named, const Inputs& inp
     return processed;
   }
   report.reason.clear();
-  processed.bodies =
-      BuildingBodies{building.gml_id, report.rung, building.attributes, std::move(bodies)};
+  processed.bodies = BuildingBodies{building.gml_id, report.rung, building.attributes,
+                                    building.addresses, std::move(bodies)};
   return processed;
 }
 

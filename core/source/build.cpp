@@ -148,6 +148,7 @@ Building BuildingMaker::make(Feature& feature) {
     RawObject& object = feature.objects[i];
     Building& building = buildings[i];
     building.gml_id = object.gml_id;
+    if (object.parent >= 0) building.kind = ObjectKind::BuildingPart;
     if (object.parent >= 0)
       building.parent = feature.objects[static_cast<std::size_t>(object.parent)].gml_id;
     building.surfaces = std::move(object.surfaces);

@@ -191,7 +191,7 @@ void append_building(Growing& growing, const BuildingBodies& building) {
   std::vector<CityObject> parts;
   std::string fallback = "building";
   for (const Body& body : building.bodies) {
-    if (!body.is_part) {
+    if (body.kind == ObjectKind::Building) {
       whole.bodies.push_back(&body);
       continue;
     }

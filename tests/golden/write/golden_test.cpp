@@ -28,7 +28,7 @@ std::vector<BuildingBodies> cube_and_house() {
       test::building("house", test::house(10.5, 8.25, 5.0625, 9.125, {-20, 3.0001, -0.0001}));
   Body annex;
   annex.name = annex.gml_id = "annex";
-  annex.is_part = true;
+  annex.kind = ObjectKind::BuildingPart;
   annex.lod = "1";
   annex.mesh = test::box(3, 3, 2.5, {-5, 3, 0});
   house.bodies.push_back(std::move(annex));

@@ -343,7 +343,7 @@ BuildingBodies building_with_parts() {
     Body part;
     part.name = id[5] == 'o' ? "p_1" : "p_2";
     part.gml_id = id;
-    part.is_part = true;
+    part.kind = ObjectKind::BuildingPart;
     part.lod = "1";
     part.mesh = test::box(2, 2, 2, {id[5] == 'o' ? 10.0 : 20.0, 0, 0});
     building.bodies.push_back(std::move(part));
