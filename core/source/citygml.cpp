@@ -189,6 +189,11 @@ class CityGmlParser {
   void report(int code, std::string where, double measured = 0);
   std::string polygon_place() const;
   void check_size();
+  void begin_feature();
+  bool can_be_read_in_pieces() const;
+  std::string_view start_tag() const;
+  std::uint64_t position() const;
+  std::uint32_t envelope(const Frame& frame);
 
   ByteReader& bytes_;
   const DocumentOptions& options_;
@@ -217,6 +222,8 @@ class CityGmlParser {
   std::unordered_map<const xmlChar*, NsMeaning> namespaces_{};
 
   std::vector<Frame> frames_{};
+  std::vector<std::string> ancestors_{};  ///< start tags of the open elements above the features
+  bool in_pieces_ = true;                 ///< features can be found again by their place
   unsigned depth_ = 0;
   unsigned skipped_ = 0;  ///< open elements of a skipped subtree
   bool capturing_ = false;
@@ -366,6 +373,7 @@ const ElementName& CityGmlParser::meaning(const xmlChar* name, const xmlChar* ur
 // ---- elements ----------------------------------------------------------------------------------
 
 Frame& CityGmlParser::push(Ctx ctx, const ElementName& element) {
+  if (ctx == Ctx::Model || ctx == Ctx::Member) ancestors_.emplace_back(start_tag());
   Frame frame = frames_.back();
   frame.ctx = ctx;
   frame.tag = element.tag;
@@ -511,24 +519,85 @@ void CityGmlParser::start_in_member(const ElementName& element, const XmlAttribu
       return start_object(element, -1, attributes);
     default:
       if (!wanted_) return skip();
-      feature_.clear();
-      tree_.clear();
-      in_feature_ = true;
-      too_large_ = false;
-      feature_begin_bytes_ = bytes_.bytes_read();
+      begin_feature();
       push(Ctx::OtherFeature, element).object = -1;
   }
 }
 
+// The tag whose start is being reported. Markup holds no '<', so it is what follows the last one;
+// the parser keeps a tag together in its buffer.
+std::string_view CityGmlParser::start_tag() const {
+  const xmlParserInput* input = context_ ? context_->input : nullptr;
+  if (!input || !input->cur || !input->base) return {};
+  const auto* end = reinterpret_cast<const char*>(input->cur);
+  const auto* begin = end;
+  while (begin > reinterpret_cast<const char*>(input->base) && *begin != '<') --begin;
+  if (*begin != '<') return {};
+  return {begin, static_cast<std::size_t>(end - begin)};
+}
+
+// Bytes of the document before the parser's place; not what it has read ahead.
+std::uint64_t CityGmlParser::position() const {
+  const long place = context_ ? xmlByteConsumed(context_) : -1;
+  return place < 0 ? 0 : static_cast<std::uint64_t>(place);
+}
+
+void CityGmlParser::begin_feature() {
+  feature_.clear();
+  tree_.clear();
+  in_feature_ = true;
+  too_large_ = false;
+  feature_begin_bytes_ = bytes_.bytes_read();
+  if (options_.piece) {
+    frames_.back().srs = options_.piece->srs;
+    frames_.back().dimension = options_.piece->dimension;
+  } else if (in_pieces_) {
+    const std::string_view tag = start_tag();
+    const std::uint64_t place = position();
+    in_pieces_ = can_be_read_in_pieces() && !tag.empty() && place >= tag.size();
+    if (!in_pieces_) return;
+    feature_.bytes.begin = place - tag.size();
+    feature_.envelope = envelope(frames_.back());
+  }
+}
+
+// Where characters have more than a byte each, a piece cannot stand behind an envelope of ours;
+// where they are transcoded, the length of a start tag is that of the file only in ASCII.
+bool CityGmlParser::can_be_read_in_pieces() const {
+  if (!context_->input->buf || !context_->input->buf->encoder) return true;
+  const std::string_view encoding = view(context_->encoding);
+  const std::string_view tag = start_tag();
+  return !encoding.empty() && encoding.substr(0, 3) != "UTF" && encoding.substr(0, 3) != "UCS" &&
+         encoding.substr(0, 9) != "ISO-10646" &&
+         std::all_of(tag.begin(), tag.end(), [](char c) { return c > 0; });
+}
+
+// The number of the envelope of features that stand where the parser is.
+std::uint32_t CityGmlParser::envelope(const Frame& frame) {
+  Envelope found{.srs = frame.srs, .dimension = frame.dimension};
+  const auto* encoding = context_->encoding;
+  if (encoding)
+    found.before = "<?xml version=\"1.0\" encoding=\"" + std::string(view(encoding)) + "\"?>";
+  for (const std::string& tag : ancestors_) {
+    found.before += tag + ">";
+    found.after.insert(0, "</" + tag.substr(1, tag.find_first_of(" \t\r\n") - 1) + ">");
+  }
+  auto& all = facts_.envelopes;
+  const auto known = std::find(all.begin(), all.end(), found);
+  constexpr std::size_t kMaxEnvelopes = 1000;  // more: members with attributes of their own
+  if (known == all.end() && all.size() == kMaxEnvelopes) {
+    in_pieces_ = false;
+    feature_.bytes = {};
+    return 0;
+  }
+  const auto number = known - all.begin();
+  if (known == all.end()) all.push_back(std::move(found));
+  return static_cast<std::uint32_t>(number);
+}
+
 void CityGmlParser::start_object(const ElementName& element, std::int32_t parent,
                                  const XmlAttributes& attributes) {
-  if (parent < 0) {
-    feature_.clear();
-    tree_.clear();
-    in_feature_ = true;
-    too_large_ = false;
-    feature_begin_bytes_ = bytes_.bytes_read();
-  }
+  if (parent < 0) begin_feature();
   object_ = static_cast<std::int32_t>(feature_.objects.size());
   RawObject& object = feature_.objects.emplace_back();
   object.gml_id = attributes.id;
@@ -792,6 +861,10 @@ void CityGmlParser::on_end() {
       return end_object(frame);
     case Ctx::OtherFeature:
       return end_feature(frame);
+    case Ctx::Model:
+    case Ctx::Member:
+      ancestors_.pop_back();
+      return;
     default:
       return;
   }
@@ -855,6 +928,7 @@ void CityGmlParser::end_object(const Frame& frame) {
 void CityGmlParser::end_feature(const Frame& frame) {
   in_feature_ = false;
   object_ = -1;
+  if (feature_.bytes.begin > 0) feature_.bytes.end = position();
   if (options_.stop.stop_requested())
     return stop_with(fail(ErrorCode::Cancelled, "reading was stopped"));
   if (wanted_) return tree_.collect(feature_, options_, *wanted_, *shared_);
@@ -862,7 +936,8 @@ void CityGmlParser::end_feature(const Frame& frame) {
   feature_.srs = frame.srs;
   ++ordinal_;
   RawObject& building = feature_.objects.front();
-  if (building.gml_id.empty()) building.gml_id = numbered_id(options_.stem, ordinal_);
+  if (building.gml_id.empty())
+    building.gml_id = numbered_id(options_.stem, options_.buildings_before + ordinal_);
   for (std::size_t part = 1; part < feature_.objects.size(); ++part)
     if (feature_.objects[part].gml_id.empty())
       feature_.objects[part].gml_id = numbered_id(building.gml_id, part);

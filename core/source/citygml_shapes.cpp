@@ -122,6 +122,7 @@ GeometryTree::NodeId GeometryTree::follow(NodeId reference, Walk& walk) {
 
 bool GeometryTree::borrow(std::string_view id, bool reversed, Walk& walk,
                           std::vector<PolygonUse>& uses) {
+  walk.feature.borrowed.emplace(id);
   if (walk.options.shared) {
     if (const auto found = walk.options.shared->by_id.find(id);
         found != walk.options.shared->by_id.end()) {

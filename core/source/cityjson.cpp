@@ -462,6 +462,7 @@ struct Delivery {
   const Header& header;
   Feature feature{};
   std::uint64_t ordinal = 0;
+  ByteRange bytes{};  ///< of the features that are delivered
 
   Result<void> deliver_all(ObjectTree& tree, const std::vector<Point3>& vertices,
                            const LoadObject& load) {
@@ -481,6 +482,7 @@ struct Delivery {
                        const LoadObject& load) {
     feature.clear();
     feature.srs = header.srs;
+    feature.bytes = bytes;
     ++ordinal;
     bool too_large = false;
     struct Due {
@@ -499,7 +501,7 @@ struct Delivery {
       raw.gml_id = entry.id;
       raw.parent = next.parent;
       if (raw.gml_id.empty())
-        raw.gml_id = index == 0 ? numbered_id(options.stem, ordinal)
+        raw.gml_id = index == 0 ? numbered_id(options.stem, options.buildings_before + ordinal)
                                 : numbered_id(feature.objects.front().gml_id, index);
       for (auto child = entry.children.rbegin(); child != entry.children.rend(); ++child) {
         if (tree.entries[*child].kind == ObjectKind::Installation)
@@ -654,6 +656,7 @@ class Lines {
   Result<bool> next(std::string& line) {
     line.clear();
     ++number_;
+    begin_ = end_;
     for (;;) {
       if (at_ == filled_) {
         buffer_.resize(1u << 16);
@@ -672,12 +675,15 @@ class Lines {
                                                       " has more than max_building_bytes = " +
                                                       std::to_string(max_bytes_) + " bytes");
       at_ += static_cast<std::size_t>(found - begin);
+      end_ += static_cast<std::uint64_t>(found - begin);
       if (found == end) continue;
       ++at_;
+      ++end_;
       return true;
     }
   }
   std::uint64_t number() const { return number_; }
+  ByteRange bytes() const { return {begin_, end_}; }
 
  private:
   ByteReader& bytes_;
@@ -685,6 +691,7 @@ class Lines {
   std::vector<char> buffer_{};
   std::size_t at_ = 0, filled_ = 0;
   std::uint64_t number_ = 0;
+  std::uint64_t begin_ = 0, end_ = 0;
 };
 
 bool blank(const std::string& line) {
@@ -761,6 +768,7 @@ Result<void> read_cityjson_seq(ByteReader& bytes, const DocumentOptions& options
       }
       if (dom::element metadata; object["metadata"].get(metadata) == simdjson::SUCCESS)
         read_metadata(metadata, facts, header);
+      if (!options.piece) facts.envelopes.push_back({.before = line + "\n"});
       continue;
     }
 
@@ -777,6 +785,7 @@ Result<void> read_cityjson_seq(ByteReader& bytes, const DocumentOptions& options
       at_line("member 'vertices' is no list of three numbers each");
       continue;
     }
+    if (!options.piece) delivery.bytes = lines.bytes();
     ObjectTree tree;
     std::vector<std::optional<dom::object>> loaded;
     for (const auto& [key, value] : city_objects) {

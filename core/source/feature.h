@@ -55,12 +55,31 @@ struct RawObject {
   std::uint32_t skipped_ade_elements = 0;
 };
 
+/// Where in the unpacked text of a document something stands.
+struct ByteRange {
+  std::uint64_t begin = 0, end = 0;
+  bool known() const { return end > begin; }
+  friend bool operator==(const ByteRange&, const ByteRange&) = default;
+};
+
+/// What must stand around a piece of a document so that it can be read by itself: the start tags
+/// around the features of an XML document, the first line of a CityJSONSeq.
+struct Envelope {
+  std::string before{}, after{};
+  std::uint32_t srs = 0;       ///< what features inherit from what is left out
+  std::uint8_t dimension = 3;  ///< likewise
+  friend bool operator==(const Envelope&, const Envelope&) = default;
+};
+
 struct Feature {
   std::vector<Point3> points{};
   std::vector<RawRing> rings{};
   std::vector<RawPolygon> polygons{};
   std::vector<RawObject> objects{};  ///< the first is the top-level building, parents before parts
   std::uint32_t srs = 0;             ///< what polygons without own srsName inherit
+  ByteRange bytes{};                 ///< unknown where the document cannot be read in pieces
+  std::uint32_t envelope = 0;        ///< index into DocumentFacts::envelopes
+  std::set<std::string> borrowed{};  ///< gml:id of geometry that other features have
 
   void clear() {
     points.clear();
@@ -68,6 +87,9 @@ struct Feature {
     polygons.clear();
     objects.clear();
     srs = 0;
+    bytes = {};
+    envelope = 0;
+    borrowed.clear();
   }
 };
 
@@ -97,6 +119,7 @@ struct DocumentFacts {
   std::uint32_t declared_srs = 0;
   std::set<std::string, std::less<>>
       unresolved{};                   ///< ids that features refer to and that they do not contain
+  std::vector<Envelope> envelopes{};  ///< of pieces of the document, usually one
   std::uint64_t skipped_objects = 0;  ///< city objects of extension types
 
   std::uint32_t intern_srs(std::string_view name);
@@ -107,6 +130,8 @@ struct DocumentOptions {
   std::string stem{};  ///< for ids of features that have none
   std::stop_token stop{};
   const SharedGeometry* shared = nullptr;  ///< resolves what a feature does not contain
+  const Envelope* piece = nullptr;         ///< set: the document is a piece in this envelope
+  std::uint64_t buildings_before = 0;      ///< in the document, of a piece
 };
 
 /// Takes a feature; it may be emptied, its memory is used again.
