@@ -2,9 +2,9 @@
 
 #include <array>
 #include <cerrno>
-#include <unordered_map>
 
 #include "core/gates/parse.h"
+#include "core/gates/polygons.h"
 
 namespace citymesh {
 namespace {
@@ -49,73 +49,86 @@ Frame read_frame(json::document& document) {
   return frame;
 }
 
-/// Maps indices of the file to those of one body.
-class BodyPoints {
- public:
-  BodyPoints(const Frame& frame, ParsedBody& body) : frame_(frame), body_(body) {}
+/// Throws what a result of ours holds against the text.
+template <class T>
+T taken(Result<T> result) {
+  if (!result) throw Refused{result.error().message};
+  return std::move(*result);
+}
+void taken(const Result<void>& result) {
+  if (!result) throw Refused{result.error().message};
+}
 
-  std::uint32_t index_of(std::uint64_t in_file) {
-    if (in_file >= frame_.vertices.size())
-      throw Refused{"object " + in_quotes(body_.name) + ": vertex " + std::to_string(in_file) +
-                    " of " + std::to_string(frame_.vertices.size())};
-    const auto [entry, is_new] =
-        known_.try_emplace(in_file, static_cast<std::uint32_t>(body_.points.size()));
-    if (is_new) {
-      const auto& v = frame_.vertices[static_cast<std::size_t>(in_file)];
-      body_.points.push_back({static_cast<double>(v[0]) * frame_.scale[0],
-                              static_cast<double>(v[1]) * frame_.scale[1],
-                              static_cast<double>(v[2]) * frame_.scale[2]});
-    }
-    return entry->second;
-  }
+Point3 place(const Frame& frame, std::uint64_t index, const std::string& object) {
+  if (index >= frame.vertices.size())
+    throw Refused{"object " + in_quotes(object) + ": vertex " + std::to_string(index) + " of " +
+                  std::to_string(frame.vertices.size())};
+  const auto& v = frame.vertices[static_cast<std::size_t>(index)];
+  return {static_cast<double>(v[0]) * frame.scale[0], static_cast<double>(v[1]) * frame.scale[1],
+          static_cast<double>(v[2]) * frame.scale[2]};
+}
 
- private:
-  const Frame& frame_;
-  ParsedBody& body_;
-  std::unordered_map<std::uint64_t, std::uint32_t> known_{};
+/// The rings of all faces; the semantics that name their patches may stand before or behind them.
+struct Faces {
+  std::vector<std::vector<std::vector<std::uint32_t>>> rings{};
+  std::vector<std::string> types{};
+  std::vector<std::int64_t> values{};  ///< -1: null
+  bool semantics = false;
 };
 
-void read_boundaries(json::array shells, const Frame& frame, ParsedBody& body) {
-  BodyPoints points(frame, body);
-  const auto refuse = [&body] {
-    return Refused{"object " + in_quotes(body.name) + ": expected triangles without holes"};
-  };
-  for (json::array shell : shells) {
-    for (json::array face : shell) {
-      std::size_t rings = 0;
-      for (json::array ring : face) {
-        if (++rings > 1) throw refuse();
-        Triangle triangle{};
-        std::size_t corners = 0;
-        for (std::uint64_t index : ring) {
-          if (corners == 3) throw refuse();
-          triangle[corners++] = points.index_of(index);
-        }
-        if (corners != 3) throw refuse();
-        body.triangles.push_back(triangle);
-      }
-      if (rings != 1) throw refuse();
+/// `nesting`: lists between this one and the faces.
+void read_boundaries(json::array list, int nesting, const Frame& frame, PolygonBody& body,
+                     Faces& faces) {
+  for (json::array item : list) {
+    if (nesting > 0) {
+      read_boundaries(item, nesting - 1, frame, body, faces);
+      continue;
+    }
+    auto& rings = faces.rings.emplace_back();
+    for (json::array ring : item) {
+      auto& corners = rings.emplace_back();
+      for (std::uint64_t index : ring)
+        corners.push_back(taken(body.point(place(frame, index, body.name()))));
     }
   }
 }
 
-void read_semantics(json::object semantics, ParsedBody& body) {
-  std::vector<std::string> types;
-  for (json::object surface : semantics["surfaces"].get_array())
-    types.push_back(text_of(surface["type"]));
-  for (json::value shell : semantics["values"].get_array()) {
-    for (json::value value : shell.get_array()) {
-      if (value.is_null()) {
-        body.patches.emplace_back();
-        continue;
-      }
-      const std::uint64_t index = value.get_uint64();
-      if (index >= types.size())
-        throw Refused{"object " + in_quotes(body.name) + ": semantic surface " +
-                      std::to_string(index) + " of " + std::to_string(types.size())};
-      body.patches.push_back(types[static_cast<std::size_t>(index)]);
+void read_values(json::array list, int nesting, Faces& faces) {
+  for (json::value item : list) {
+    if (nesting > 0) {
+      read_values(item.get_array(), nesting - 1, faces);
+    } else {
+      faces.values.push_back(item.is_null() ? -1 : static_cast<std::int64_t>(item.get_uint64()));
     }
   }
+}
+
+ParsedBody read_solid(json::object geometry, int nesting, const std::string& id,
+                      const Frame& frame) {
+  PolygonBody body(id);
+  Faces faces;
+  read_boundaries(geometry["boundaries"].get_array(), nesting, frame, body, faces);
+  auto semantics = geometry["semantics"];
+  if (semantics.error() != simdjson::NO_SUCH_FIELD) {
+    json::object members = semantics.get_object();
+    for (json::object surface : members["surfaces"].get_array())
+      faces.types.push_back(text_of(surface["type"]));
+    read_values(members["values"].get_array(), nesting, faces);
+    if (faces.values.size() != faces.rings.size())
+      throw Refused{"object " + in_quotes(id) + ": " + std::to_string(faces.values.size()) +
+                    " semantic values for " + std::to_string(faces.rings.size()) + " faces"};
+  } else {
+    faces.values.assign(faces.rings.size(), -1);
+  }
+  for (std::size_t f = 0; f < faces.rings.size(); ++f) {
+    const std::int64_t value = faces.values[f];
+    if (value >= static_cast<std::int64_t>(faces.types.size()))
+      throw Refused{"object " + in_quotes(id) + ": semantic surface " + std::to_string(value) +
+                    " of " + std::to_string(faces.types.size())};
+    taken(body.add(faces.rings[f],
+                   value < 0 ? std::string_view() : faces.types[static_cast<std::size_t>(value)]));
+  }
+  return body.take();
 }
 
 Result<void> read_objects(json::document& document, const Frame& frame,
@@ -126,22 +139,12 @@ Result<void> read_objects(json::document& document, const Frame& frame,
     auto geometries = object["geometry"];
     if (geometries.error() == simdjson::NO_SUCH_FIELD) continue;
     for (json::object geometry : geometries.get_array()) {
-      ParsedBody body;
-      body.name = id;
-      if (const std::string type = text_of(geometry["type"]); type != "Solid")
+      const std::string type = text_of(geometry["type"]);
+      if (type != "Solid" && type != "MultiSolid")
         throw Refused{"object " + in_quotes(id) + ": expected a Solid instead of " +
                       in_quotes(type)};
-      read_boundaries(geometry["boundaries"].get_array(), frame, body);
-      auto semantics = geometry["semantics"];
-      if (semantics.error() == simdjson::NO_SUCH_FIELD) {
-        body.patches.resize(body.triangles.size());
-      } else {
-        read_semantics(semantics.get_object(), body);
-      }
-      if (body.patches.size() != body.triangles.size())
-        throw Refused{"object " + in_quotes(id) + ": " + std::to_string(body.patches.size()) +
-                      " semantic values for " + std::to_string(body.triangles.size()) + " faces"};
-      if (auto taken = sink(std::move(body)); !taken) return taken;
+      if (auto done = sink(read_solid(geometry, type == "Solid" ? 1 : 2, id, frame)); !done)
+        return done;
     }
   }
   return {};

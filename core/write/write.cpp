@@ -64,6 +64,13 @@ std::string origin_text(const Scene& scene) {
   return text;
 }
 
+std::string scene_text(const Scene& scene) {
+  std::string text = generator();
+  if (!scene.process.empty()) text += ' ' + one_line(scene.process);
+  return text + "; crs " + crs_text(scene) + "; unit metre; axes " + std::string(kAxes) +
+         "; origin " + origin_text(scene);
+}
+
 TrianglesByType by_type(const TriangleMesh& mesh) {
   TrianglesByType grouped;
   for (const SurfaceType type : mesh.surface_types)

@@ -28,6 +28,10 @@ std::string generator();                      ///< "citymesh 0.1.0"
 std::string crs_text(const Scene& scene);     ///< "EPSG:25833", "unknown" when none is stated
 std::string origin_text(const Scene& scene);  ///< "391000 5820000 0"
 
+/// "citymesh 0.1.0 export-for-simulation; crs EPSG:25833; unit metre; axes …; origin …": for
+/// formats with room for one text.
+std::string scene_text(const Scene& scene);
+
 inline constexpr std::size_t kSurfaceTypeCount = 12;
 
 /// Triangle numbers of a mesh grouped by surface type: types in enum order, mesh order within.

@@ -204,12 +204,22 @@ TEST(ParseCityJson, GivesPointsRelativeToTheOrigin) {
   EXPECT_THAT(parsed.bodies[0].patches, ElementsAre("RoofSurface", ""));
 }
 
+TEST(ParseCityJson, CutsPolygonsWithHolesIntoTriangles) {
+  const Parsed parsed = parse(
+      "cityjson", cityjson(solid_of("[[0,1,2,3],[4,5,6]]"),
+                           "[0,0,0],[90,0,0],[90,90,0],[0,90,0],[30,30,0],[30,60,0],[60,30,0]"));
+  ASSERT_TRUE(parsed.result) << parsed.result.error().message;
+  EXPECT_EQ(parsed.bodies[0].triangles.size(), 7u);
+  EXPECT_EQ(parsed.bodies[0].patches.size(), 7u);
+}
+
 TEST(ParseCityJson, RefusesWhatTheWriterWouldNotWrite) {
   const std::string vertices(kTriangleVertices);
   expect_refused("cityjson", cityjson(solid_of("[[0,1,3]]"), vertices), "vertex 3 of 3");
-  expect_refused("cityjson", cityjson(solid_of("[[0,1]]"), vertices), "expected triangles");
-  expect_refused("cityjson", cityjson(solid_of("[[0,1,2,0]]"), vertices), "expected triangles");
-  expect_refused("cityjson", cityjson(solid_of("[[0,1,2],[0,1,2]]"), vertices), "without holes");
+  expect_refused("cityjson", cityjson(solid_of("[[0,1]]"), vertices), "bound no area");
+  expect_refused("cityjson", cityjson(solid_of("[[0,1,2],[0,1,2]]"), vertices), "bound no area");
+  expect_refused("cityjson", cityjson(solid_of("[[0,1,2]]"), "[0,0,0],[1,0,0],[3000000000,0,1]"),
+                 "beyond the grid");
   expect_refused("cityjson", cityjson(solid_of("[[0,1,2]]"), "[0,0,0.5]"), "");
   expect_refused("cityjson", cityjson(solid_of("[[0,1,2]]"), "[0,0]"), "three numbers");
   expect_refused("cityjson", cityjson(R"({"type":"MultiSurface","boundaries":[]})", vertices),

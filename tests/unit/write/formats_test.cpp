@@ -217,8 +217,8 @@ TEST(Obj, SharesNoVertexBetweenObjects) {
   EXPECT_EQ(std::count(text.begin(), text.end(), 'v') -
                 static_cast<std::ptrdiff_t>(std::string("v").size()),  // one in the header
             16);
-  EXPECT_THAT(text, HasSubstr("o b_2\nv 1.0000 0.0000 0.0000\n"));
-  EXPECT_THAT(text, HasSubstr("g b_2__GroundSurface\nf 15 13 11\n"));
+  EXPECT_THAT(text, HasSubstr("o b_2\nv 1.0000 1.0000 0.0000\n"));
+  EXPECT_THAT(text, HasSubstr("g b_2__GroundSurface\nf 9 10 11\n"));
 }
 
 TEST(Obj, GroupsFacesInTheOrderOfSurfaceTypes) {
@@ -391,16 +391,16 @@ TEST(CityJson, KeepsAttributesWithTheirTypesAndTheFirstOfARepeatedName) {
                                                                       {"listed", true}}));
 }
 
-TEST(CityJson, HasASolidOfTrianglesWithOneSemanticSurfacePerSourceSurface) {
+TEST(CityJson, HasASolidOfPolygonsWithOneSemanticSurfacePerSourceSurface) {
   const auto json = cityjson_of({test::building("b_1", test::box(5, 5, 3))});
   const auto& geometry = json["CityObjects"]["b_1"]["geometry"][0];
   EXPECT_EQ(geometry["type"], "Solid");
   EXPECT_EQ(geometry["lod"], "2");
   ASSERT_EQ(geometry["boundaries"].size(), 1u);
-  ASSERT_EQ(geometry["boundaries"][0].size(), 12u);
+  ASSERT_EQ(geometry["boundaries"][0].size(), 6u);
   for (const auto& face : geometry["boundaries"][0]) {
     ASSERT_EQ(face.size(), 1u);
-    EXPECT_EQ(face[0].size(), 3u);
+    EXPECT_EQ(face[0].size(), 4u);
     for (const auto& index : face[0]) EXPECT_LT(index.get<std::size_t>(), json["vertices"].size());
   }
   const auto& semantics = geometry["semantics"];
@@ -408,14 +408,58 @@ TEST(CityJson, HasASolidOfTrianglesWithOneSemanticSurfacePerSourceSurface) {
   EXPECT_EQ(semantics["surfaces"][0],
             (nlohmann::json{{"type", "GroundSurface"}, {"id", "ground"}}));
   ASSERT_EQ(semantics["values"].size(), 1u);
-  EXPECT_EQ(semantics["values"][0], nlohmann::json({0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5}));
+  EXPECT_EQ(semantics["values"][0], nlohmann::json({0, 1, 2, 3, 4, 5}));
+}
+
+TEST(CityJson, WritesHolesAsInnerRingsAndCavitiesAsInnerShells) {
+  const auto json = cityjson_of({test::building("b_1", test::with_shaft_and_cavity())});
+  const auto& geometry = json["CityObjects"]["b_1"]["geometry"][0];
+  EXPECT_EQ(geometry["type"], "Solid");
+  const auto& shells = geometry["boundaries"];
+  ASSERT_EQ(shells.size(), 3u) << "the exterior and two cavities";
+  EXPECT_EQ(shells[0].size(), 10u);
+  EXPECT_EQ(shells[0][0].size(), 2u) << "the ground has the hole of the shaft";
+  EXPECT_EQ(shells[1].size(), 6u);
+  EXPECT_EQ(shells[2].size(), 6u);
+  EXPECT_EQ(geometry["semantics"]["values"][2].size(), 6u);
+}
+
+TEST(CityJson, BeginsANewSolidWhereAnExteriorFollowsACavity) {
+  auto building = test::building("b_1", test::box(1, 1, 1));
+  auto& faces = building.bodies[0].mesh.faces;
+  faces[1].cavity = true;
+  const auto json = cityjson_of({building});
+  const auto& geometry = json["CityObjects"]["b_1"]["geometry"][0];
+  EXPECT_EQ(geometry["type"], "MultiSolid");
+  ASSERT_EQ(geometry["boundaries"].size(), 2u);
+  EXPECT_EQ(geometry["boundaries"][0].size(), 2u);
+  EXPECT_EQ(geometry["semantics"]["values"], nlohmann::json::parse("[[[0],[1]],[[2,3,4,5]]]"));
+}
+
+TEST(CityJson, KeepsAddresses) {
+  auto building = test::building("b_1", test::box(1, 1, 1));
+  building.addresses = {{"Main \"Street\"", "12a", "", "12345", "Berlin", "", "Germany"}};
+  EXPECT_EQ(cityjson_of({building})["CityObjects"]["b_1"]["address"],
+            nlohmann::json::parse(
+                R"([{"Country":"Germany","Locality":"Berlin","Postcode":"12345",
+                     "ThoroughfareName":"Main \"Street\"","ThoroughfareNumber":"12a"}])"));
+}
+
+TEST(CityJson, KeepsInstallationsAsChildren) {
+  auto building = test::building("b_1", test::box(1, 1, 1));
+  Body balcony{.name = "balcony", .gml_id = "balcony", .kind = ObjectKind::BuildingInstallation};
+  balcony.mesh = test::box(1, 1, 1, {3, 0, 0});
+  building.bodies.push_back(std::move(balcony));
+  const auto objects = cityjson_of({building})["CityObjects"];
+  EXPECT_EQ(objects["balcony"]["type"], "BuildingInstallation");
+  EXPECT_EQ(objects["balcony"]["parents"], nlohmann::json({"b_1"}));
 }
 
 TEST(CityJson, StatesNoSemanticsWhereTheTypeIsUnknown) {
   auto building = test::building("b_1", test::box(1, 1, 1));
-  for (auto& type : building.bodies[0].mesh.surface_types) type = SurfaceType::Unknown;
+  for (auto& face : building.bodies[0].mesh.faces) face.type = SurfaceType::Unknown;
   EXPECT_FALSE(cityjson_of({building})["CityObjects"]["b_1"]["geometry"][0].contains("semantics"));
-  building.bodies[0].mesh.surface_types[3] = SurfaceType::RoofSurface;
+  building.bodies[0].mesh.faces[3].type = SurfaceType::RoofSurface;
   EXPECT_TRUE(
       cityjson_of({building})["CityObjects"]["b_1"]["geometry"][0]["semantics"]["values"][0][0]
           .is_null());

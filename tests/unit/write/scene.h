@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/citymodel/mesh.h"
+#include "core/mesh/mesh.h"
 
 namespace citymesh::test {
 
@@ -14,29 +15,25 @@ inline GridPoint grid(double x, double y, double z) {
           std::llround(z * kGridStepsPerMetre)};
 }
 
-/// A mesh built face by face from polygons that are fans of triangles.
+/// A mesh built polygon by polygon.
 class MeshBuilder {
  public:
   std::uint32_t point(double x, double y, double z) {
-    mesh_.points.push_back(grid(x, y, z));
-    return static_cast<std::uint32_t>(mesh_.points.size() - 1);
+    shell_.points.push_back(grid(x, y, z));
+    return static_cast<std::uint32_t>(shell_.points.size() - 1);
   }
-  void face(SurfaceType type, const std::string& id, std::vector<std::uint32_t> corners) {
-    mesh_.surface_ids.push_back(id);
-    more(type, corners);
+  Face& face(SurfaceType type, const std::string& id, Ring corners) {
+    Face& face = shell_.faces.emplace_back();
+    face.rings = {std::move(corners)};
+    face.type = type;
+    face.source = static_cast<std::uint32_t>(shell_.surface_ids.size());
+    shell_.surface_ids.push_back(id);
+    return face;
   }
-  /// One more convex piece of the last face.
-  void more(SurfaceType type, std::vector<std::uint32_t> corners) {
-    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
-      mesh_.triangles.push_back({corners[0], corners[i], corners[i + 1]});
-      mesh_.surface_types.push_back(type);
-      mesh_.source_surfaces.push_back(static_cast<std::uint32_t>(mesh_.surface_ids.size() - 1));
-    }
-  }
-  TriangleMesh mesh() { return std::move(mesh_); }
+  TriangleMesh mesh() { return std::get<TriangleMesh>(citymesh::mesh(shell_)); }
 
  private:
-  TriangleMesh mesh_{};
+  Shell shell_{.surface_ids = {""}};
 };
 
 /// Turns about (cx, cy) so that scenes are not all parallel to the axes.
@@ -120,6 +117,35 @@ inline TriangleMesh courtyard(double width, double depth, double wing, double he
     add(SurfaceType::WallSurface, "wall", {p[0][i], p[0][j], p[1][j], p[1][i]});
     add(SurfaceType::WallSurface, "yard", {p[2][j], p[2][i], p[3][i], p[3][j]});
     add(SurfaceType::RoofSurface, "roof", {p[1][i], p[1][j], p[3][j], p[3][i]});
+  }
+  return b.mesh();
+}
+
+/// A block of 9 x 6 x 4 m with a shaft through it and two hollow spaces inside.
+inline TriangleMesh with_shaft_and_cavity() {
+  MeshBuilder b;
+  const auto corners = [&](double x0, double y0, double z0, double x1, double y1, double z1) {
+    return std::array{b.point(x0, y0, z0), b.point(x1, y0, z0), b.point(x1, y1, z0),
+                      b.point(x0, y1, z0), b.point(x0, y0, z1), b.point(x1, y0, z1),
+                      b.point(x1, y1, z1), b.point(x0, y1, z1)};
+  };
+  const auto o = corners(0, 0, 0, 9, 6, 4), s = corners(7, 2, 0, 8, 4, 4);
+  b.face(SurfaceType::GroundSurface, "ground", {o[3], o[2], o[1], o[0]})
+      .rings.push_back({s[0], s[1], s[2], s[3]});
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t j = (i + 1) % 4;
+    b.face(SurfaceType::WallSurface, "wall", {o[i], o[j], o[j + 4], o[i + 4]});
+    b.face(SurfaceType::WallSurface, "shaft", {s[j], s[i], s[i + 4], s[j + 4]});
+  }
+  b.face(SurfaceType::RoofSurface, "roof", {o[4], o[5], o[6], o[7]})
+      .rings.push_back({s[7], s[6], s[5], s[4]});
+  for (const double x : {1.0, 4.0}) {
+    const auto c = corners(x, 1, 1, x + 2, 3, 3);
+    const std::array<Ring, 6> inward{Ring{c[0], c[1], c[2], c[3]}, {c[7], c[6], c[5], c[4]},
+                                     {c[0], c[4], c[5], c[1]},     {c[1], c[5], c[6], c[2]},
+                                     {c[2], c[6], c[7], c[3]},     {c[3], c[7], c[4], c[0]}};
+    for (const Ring& ring : inward)
+      b.face(SurfaceType::InteriorWallSurface, "hollow", ring).cavity = true;
   }
   return b.mesh();
 }

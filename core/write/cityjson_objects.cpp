@@ -1,0 +1,315 @@
+#include "core/write/cityjson_objects.h"
+
+#include <algorithm>
+#include <array>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+
+#include "core/write/solids.h"
+#include "core/write/text.h"
+#include "core/write/writers.h"
+
+namespace citymesh {
+namespace {
+
+/// "EPSG:25833" as OGC's https URI. Of a compound CRS the horizontal part: CityJSON has no form for
+/// more; the title names it in full. Empty when there is none to state.
+std::string crs_uri(const Crs& crs) {
+  if (!crs.known()) return {};
+  const auto colon = crs.id.find(':');
+  if (colon == std::string::npos) return {};
+  const std::string authority = crs.id.substr(0, colon);
+  const std::string code = crs.id.substr(colon + 1, crs.id.find('+', colon) - colon - 1);
+  const std::string version = authority == "OGC" ? "1.3" : "0";
+  return "https://www.opengis.net/def/crs/" + authority + '/' + version + '/' + code;
+}
+
+void append_attributes(std::string& json, const Attributes& attributes) {
+  std::unordered_set<std::string_view> written;  // a repeated name keeps the first value
+  bool leading = true;
+  for (const auto& [name, value] : attributes) {
+    if (!written.insert(name).second) continue;
+    if (!leading) json += ',';
+    leading = false;
+    append_json_string(json, name);
+    json += ':';
+    if (const auto* flag = std::get_if<bool>(&value)) {
+      json += *flag ? "true" : "false";
+    } else if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+      append_integer(json, *integer);
+    } else if (const auto* number = std::get_if<double>(&value)) {
+      append_exact(json, *number);
+    } else {
+      append_json_string(json, std::get<std::string>(value));
+    }
+  }
+}
+
+/// Addresses by the names of CityJSON's examples, which are those of xAL.
+void append_addresses(std::string& json, const std::vector<Address>& addresses) {
+  for (std::size_t i = 0; i < addresses.size(); ++i) {
+    const Address& address = addresses[i];
+    json += i == 0 ? "{" : ",{";
+    bool leading = true;
+    const std::array<std::pair<std::string_view, const std::string*>, 7> members{
+        {{"Country", &address.country},
+         {"AdministrativeArea", &address.state},
+         {"Locality", &address.city},
+         {"Postcode", &address.zip_code},
+         {"ThoroughfareName", &address.street},
+         {"ThoroughfareNumber", &address.house_number},
+         {"PostBox", &address.po_box}}};
+    for (const auto& [name, value] : members) {
+      if (value->empty()) continue;
+      if (!std::exchange(leading, false)) json += ',';
+      append_json_string(json, name);
+      json += ':';
+      append_json_string(json, *value);
+    }
+    json += '}';
+  }
+}
+
+/// Semantic surfaces of a mesh: one for each (type, source surface), in order of first appearance.
+struct Semantics {
+  struct Surface {
+    SurfaceType type;
+    std::uint32_t source;
+  };
+  std::vector<Surface> surfaces{};
+  std::vector<std::int32_t> values{};  ///< per face; -1: no semantics
+};
+
+Semantics semantics_of(const TriangleMesh& mesh) {
+  Semantics semantics;
+  semantics.values.reserve(mesh.faces.size());
+  std::unordered_map<std::uint64_t, std::int32_t> known;
+  for (const Face& face : mesh.faces) {
+    if (face.type == SurfaceType::Unknown) {
+      semantics.values.push_back(-1);
+      continue;
+    }
+    const std::uint64_t key = (static_cast<std::uint64_t>(face.type) << 32) | face.source;
+    const auto [entry, is_new] =
+        known.try_emplace(key, static_cast<std::int32_t>(semantics.surfaces.size()));
+    if (is_new) semantics.surfaces.push_back({face.type, face.source});
+    semantics.values.push_back(entry->second);
+  }
+  return semantics;
+}
+
+/// Writes the nesting of a body's shells; `append_shell` writes what is in a shell's brackets.
+template <class AppendShell>
+void append_nested(std::string& json, const std::vector<SolidFaces>& solids,
+                   AppendShell&& append_shell) {
+  if (solids.size() > 1) json += '[';
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    json += i == 0 ? "[[" : ",[[";
+    append_shell(solids[i].exterior);
+    for (const FaceRange& interior : solids[i].interiors) {
+      json += "],[";
+      append_shell(interior);
+    }
+    json += "]]";
+  }
+  if (solids.size() > 1) json += ']';
+}
+
+}  // namespace
+
+/// The building itself, a part or an installation, with the bodies that are its geometry.
+struct CityJsonObjects::Object {
+  std::string id{};
+  const Attributes* attributes = nullptr;
+  const std::vector<Address>* addresses = nullptr;
+  std::vector<const Body*> bodies{};
+};
+
+void CityJsonObjects::clear_text() {
+  objects_.clear();
+  vertices_.clear();
+}
+
+void CityJsonObjects::restart_vertices() {
+  clear_text();
+  next_vertex_ = 0;
+  any_object_ = false;
+}
+
+std::string CityJsonObjects::unused_id(const std::string& gml_id, const std::string& fallback) {
+  if (!gml_id.empty() && used_.insert(gml_id).second) return gml_id;
+  std::string id = fallback;
+  for (int n = 2; !used_.insert(id).second; ++n) id = fallback + '_' + std::to_string(n);
+  return id;
+}
+
+void CityJsonObjects::append_vertices(const Body& body) {
+  for (const GridPoint& p : body.mesh.points) {
+    if (next_vertex_++ > 0) vertices_ += ',';
+    vertices_ += line_break_;
+    vertices_ += '[';
+    append_integer(vertices_, p.x);
+    vertices_ += ',';
+    append_integer(vertices_, p.y);
+    vertices_ += ',';
+    append_integer(vertices_, p.z);
+    vertices_ += ']';
+  }
+  extent_.add(body.mesh);
+}
+
+void CityJsonObjects::append_geometry(const Body& body) {
+  const TriangleMesh& mesh = body.mesh;
+  const std::vector<SolidFaces> solids = solids_of(mesh);
+  objects_ += solids.size() > 1 ? R"({"type":"MultiSolid","lod":)" : R"({"type":"Solid","lod":)";
+  append_json_string(objects_, body.lod.empty() ? "2" : body.lod);
+  objects_ += ",\"boundaries\":";
+  append_nested(objects_, solids, [&](const FaceRange& faces) {
+    for (std::size_t f = faces.begin; f < faces.end; ++f) {
+      objects_ += f == faces.begin ? "[" : ",[";
+      for (std::size_t r = 0; r < mesh.faces[f].rings.size(); ++r) {
+        const Ring& ring = mesh.faces[f].rings[r];
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+          objects_ += i > 0 ? "," : r > 0 ? ",[" : "[";
+          append_integer(objects_, static_cast<std::int64_t>(next_vertex_ + ring[i]));
+        }
+        objects_ += ']';
+      }
+      objects_ += ']';
+    }
+  });
+
+  const Semantics semantics = semantics_of(mesh);
+  if (!semantics.surfaces.empty()) {
+    objects_ += ",\"semantics\":{\"surfaces\":[";
+    for (std::size_t i = 0; i < semantics.surfaces.size(); ++i) {
+      const auto& surface = semantics.surfaces[i];
+      objects_ += i == 0 ? "{\"type\":" : ",{\"type\":";
+      append_json_string(objects_, to_string(surface.type));
+      if (surface.source < mesh.surface_ids.size() && !mesh.surface_ids[surface.source].empty()) {
+        objects_ += ",\"id\":";
+        append_json_string(objects_, mesh.surface_ids[surface.source]);
+      }
+      objects_ += '}';
+    }
+    objects_ += "],\"values\":";
+    append_nested(objects_, solids, [&](const FaceRange& faces) {
+      for (std::size_t f = faces.begin; f < faces.end; ++f) {
+        if (f > faces.begin) objects_ += ',';
+        if (semantics.values[f] < 0) {
+          objects_ += "null";
+        } else {
+          append_integer(objects_, semantics.values[f]);
+        }
+      }
+    });
+    objects_ += '}';
+  }
+  objects_ += '}';
+}
+
+void CityJsonObjects::append_object(const Object& object, std::string_view type,
+                                    std::string_view relations) {
+  if (std::exchange(any_object_, true)) objects_ += ',';
+  objects_ += line_break_;
+  append_json_string(objects_, object.id);
+  objects_ += ":{\"type\":";
+  append_json_string(objects_, type);
+  if (!object.attributes->empty()) {
+    objects_ += ",\"attributes\":{";
+    append_attributes(objects_, *object.attributes);
+    objects_ += '}';
+  }
+  if (!object.addresses->empty()) {
+    objects_ += ",\"address\":[";
+    append_addresses(objects_, *object.addresses);
+    objects_ += ']';
+  }
+  objects_ += relations;
+  if (!object.bodies.empty()) {
+    objects_ += ",\"geometry\":[";
+    for (std::size_t i = 0; i < object.bodies.size(); ++i) {
+      if (i > 0) objects_ += ',';
+      append_geometry(*object.bodies[i]);
+      append_vertices(*object.bodies[i]);
+    }
+    objects_ += ']';
+  }
+  objects_ += '}';
+}
+
+std::string CityJsonObjects::append(const BuildingBodies& building) {
+  Object whole{.attributes = &building.attributes, .addresses = &building.addresses};
+  std::vector<Object> children;
+  for (const Body& body : building.bodies) {
+    if (body.kind == ObjectKind::Building) {
+      whole.bodies.push_back(&body);
+      continue;
+    }
+    const auto same = std::find_if(children.begin(), children.end(), [&body](const Object& child) {
+      return child.bodies[0]->gml_id == body.gml_id && child.bodies[0]->kind == body.kind;
+    });
+    if (same != children.end()) {
+      same->bodies.push_back(&body);
+    } else {
+      children.push_back(
+          {.attributes = &body.attributes, .addresses = &body.addresses, .bodies = {&body}});
+    }
+  }
+  whole.id = unused_id(building.gml_id,
+                       building.bodies.empty() ? "building" : building.bodies.front().name);
+  for (Object& child : children)
+    child.id = unused_id(child.bodies[0]->gml_id, child.bodies[0]->name);
+
+  std::string relations;
+  for (const Object& child : children) {
+    relations += relations.empty() ? ",\"children\":[" : ",";
+    append_json_string(relations, child.id);
+  }
+  if (!children.empty()) relations += ']';
+  append_object(whole, "Building", relations);
+
+  std::string parent = ",\"parents\":[";
+  append_json_string(parent, whole.id);
+  parent += ']';
+  for (const Object& child : children)
+    append_object(child, to_string(child.bodies[0]->kind), parent);
+  return whole.id;
+}
+
+std::string cityjson_head(const Scene& scene) {
+  std::string json =
+      "\"type\":\"CityJSON\",\"version\":\"2.0\",\"transform\":"
+      "{\"scale\":[0.0001,0.0001,0.0001],\"translate\":[";
+  append_exact(json, scene.origin.x);
+  json += ',';
+  append_exact(json, scene.origin.y);
+  json += ',';
+  append_exact(json, scene.origin.z);
+  return json + "]}";
+}
+
+std::string cityjson_metadata(const Scene& scene, const GridExtent& extent) {
+  std::string json = "{\"title\":";
+  append_json_string(json, scene_text(scene));
+  if (!extent.empty) {
+    json += ",\"geographicalExtent\":[";
+    for (const GridPoint* p : {&extent.min, &extent.max}) {
+      if (p == &extent.max) json += ',';
+      append_grid(json, absolute_steps(scene.origin.x, p->x));
+      json += ',';
+      append_grid(json, absolute_steps(scene.origin.y, p->y));
+      json += ',';
+      append_grid(json, absolute_steps(scene.origin.z, p->z));
+    }
+    json += ']';
+  }
+  if (const std::string uri = crs_uri(scene.crs); !uri.empty()) {
+    json += ",\"referenceSystem\":";
+    append_json_string(json, uri);
+  }
+  return json + '}';
+}
+
+}  // namespace citymesh
