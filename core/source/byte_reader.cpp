@@ -54,7 +54,19 @@ Result<ByteReader> ByteReader::open(const std::filesystem::path& path, std::uint
   return ByteReader(file, max_bytes);
 }
 
+ByteReader ByteReader::over(std::string text) {
+  ByteReader reader(nullptr, text.size());
+  reader.text_ = std::move(text);
+  return reader;
+}
+
 Result<std::size_t> ByteReader::read(char* buffer, std::size_t size) {
+  if (!file_) {
+    const std::size_t count = std::min(size, text_.size() - static_cast<std::size_t>(bytes_read_));
+    std::memcpy(buffer, text_.data() + bytes_read_, count);
+    bytes_read_ += count;
+    return count;
+  }
   const auto file = static_cast<gzFile>(file_.get());
   const int count = gzread(file, buffer, static_cast<unsigned>(std::min(size, kChunk)));
   int code = Z_OK;
@@ -68,6 +80,14 @@ Result<std::size_t> ByteReader::read(char* buffer, std::size_t size) {
     return fail(ErrorCode::ResourceExhausted,
                 "the file has more than max_file_bytes = " + std::to_string(max_bytes_) + " bytes");
   return static_cast<std::size_t>(count);
+}
+
+Result<bool> is_gzip(const std::filesystem::path& path) {
+  std::FILE* file = std::fopen(path.c_str(), "rbe");
+  if (!file) return open_error(path, errno);
+  const bool packed = starts_as_gzip(file);
+  std::fclose(file);
+  return packed;
 }
 
 Result<RandomReader> RandomReader::open(const std::filesystem::path& path,

@@ -15,6 +15,9 @@ class ByteReader {
   /// Errors: NotFound, PermissionDenied.
   static Result<ByteReader> open(const std::filesystem::path& path, std::uint64_t max_bytes);
 
+  /// A text in memory.
+  static ByteReader over(std::string text);
+
   ByteReader(ByteReader&&) noexcept = default;
   ByteReader& operator=(ByteReader&&) noexcept = default;
 
@@ -29,10 +32,14 @@ class ByteReader {
   };
   ByteReader(void* file, std::uint64_t max_bytes) : file_(file), max_bytes_(max_bytes) {}
 
-  std::unique_ptr<void, Closer> file_;
+  std::unique_ptr<void, Closer> file_;  ///< none: `text_` is read
+  std::string text_{};
   std::uint64_t max_bytes_ = 0;
   std::uint64_t bytes_read_ = 0;
 };
+
+/// Whether a file is packed as a whole.
+Result<bool> is_gzip(const std::filesystem::path& path);
 
 /// A file read at any offset; gzip is unpacked into a nameless temporary file first.
 class RandomReader {

@@ -349,6 +349,7 @@ void GeometryTree::collect(Feature& feature, const DocumentOptions& options,
       return;  // the rest stays dangling
     for (PolygonUse& use : uses) use.polygon = copy_polygon(feature, use.polygon, shared.pool);
     shared.by_id.emplace(id, std::move(uses));
+    shared.places.emplace(id, SharedPlace{feature.bytes, feature.envelope});
   }
 }
 

@@ -103,10 +103,17 @@ struct TextHash {
 template <class Value>
 using TextMap = std::unordered_map<std::string, Value, TextHash, std::equal_to<>>;
 
+/// Where geometry that several features use is to be found.
+struct SharedPlace {
+  ByteRange bytes{};  ///< of the feature that has it; unknown where there are no pieces
+  std::uint32_t envelope = 0;
+};
+
 /// Geometry that features of a document borrow from other features, by gml:id.
 struct SharedGeometry {
   Feature pool{};
   TextMap<std::vector<PolygonUse>> by_id{};
+  TextMap<SharedPlace> places{};
 };
 
 /// What is known of a document besides its buildings.

@@ -12,10 +12,6 @@ namespace {
 constexpr double kSouthernmost_deg = -60, kNorthernmost_deg = 80;
 // Data may reach a little beyond the official area of use.
 constexpr double kAreaMargin_deg = 1.0;
-// The exact grid reaches 214 km; what is further from the middle of the data is astray.
-constexpr double kAstray_m = 200'000.0;
-constexpr double kAstray_deg = 2.0;
-
 bool plausible_place(const CrsFacts& facts, double longitude_deg, double latitude_deg) {
   if (!(latitude_deg >= kSouthernmost_deg && latitude_deg <= kNorthernmost_deg)) return false;
   if (!(std::abs(longitude_deg) <= 360)) return false;
@@ -63,30 +59,11 @@ Box3 with_axes_swapped(Box3 box) {
   return box;
 }
 
-Box3 robust_extent(const std::vector<Box3>& boxes, double max_distance) {
-  std::vector<double> xs, ys;
-  for (const Box3& box : boxes) {
-    xs.push_back(centre_of(box).x);
-    ys.push_back(centre_of(box).y);
-  }
-  if (boxes.empty()) return {};
-  const auto middle = static_cast<std::ptrdiff_t>(boxes.size() / 2);
-  std::nth_element(xs.begin(), xs.begin() + middle, xs.end());
-  std::nth_element(ys.begin(), ys.begin() + middle, ys.end());
-  const double x = xs[static_cast<std::size_t>(middle)], y = ys[static_cast<std::size_t>(middle)];
-  Box3 extent;
-  for (const Box3& box : boxes)
-    if (box.min.x >= x - max_distance && box.max.x <= x + max_distance &&
-        box.min.y >= y - max_distance && box.max.y <= y + max_distance)
-      extent.add(box);
-  return extent;
-}
-
-std::vector<SrsUse> interpret_srs(const FileScan& scan, const Crs& assumed, CrsBook& book) {
-  std::vector<SrsUse> uses(scan.facts.srs_names.size());
+std::vector<SrsUse> interpret_srs(const FileRecord& file, const Crs& assumed, CrsBook& book) {
+  std::vector<SrsUse> uses(file.facts.srs_names.size());
   for (std::size_t i = 0; i < uses.size(); ++i) {
     SrsUse& use = uses[i];
-    const std::string& name = scan.facts.srs_names[i];
+    const std::string& name = file.facts.srs_names[i];
     auto parsed = name.empty() ? Result<Crs>(assumed) : parse_crs(name);
     if (!parsed) {
       use.problem = parsed.error().message;
@@ -103,16 +80,13 @@ std::vector<SrsUse> interpret_srs(const FileScan& scan, const Crs& assumed, CrsB
       facts = *described;
     }
 
-    std::vector<Box3> boxes;
-    for (const ScannedBuilding& building : scan.buildings)
-      if (building.srs == i && !building.extent.is_empty()) boxes.push_back(building.extent);
     const bool geographic = facts && facts->geographic;
-    use.extent = robust_extent(boxes, geographic ? kAstray_deg : kAstray_m);
+    use.extent = geographic ? file.srs[i].near_deg : file.srs[i].near_m;
     if (!facts) continue;
 
     use.swap_axes = geographic && facts->north_first;
     const Box3 seen = !use.extent.is_empty()         ? use.extent
-                      : i == scan.facts.declared_srs ? scan.facts.declared_extent
+                      : i == file.facts.declared_srs ? file.facts.declared_extent
                                                      : Box3{};
     if (!seen.is_empty()) {
       const Point3 as_stored = centre_of(seen);

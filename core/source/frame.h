@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/citymodel/crs.h"
-#include "core/source/scan.h"
+#include "core/source/catalogue.h"
 
 namespace citymesh::source {
 
@@ -30,14 +30,10 @@ struct SrsUse {
   Box3 extent{};          ///< of the buildings that use it, axes turned; those far away left out
 };
 
-/// Reads the CRS names of a scanned file and decides their axis order: geographic CRSs in the order
+/// Reads the CRS names of a file and decides their axis order: geographic CRSs in the order
 /// of the registry, projected ones east before north whatever the registry says; the other way
 /// round where only that is plausible against the area of use. `assumed` stands for no name.
-std::vector<SrsUse> interpret_srs(const FileScan& scan, const Crs& assumed, CrsBook& book);
-
-/// The box without those whose centre is far from the median centre: one stray building must not
-/// move the origin.
-Box3 robust_extent(const std::vector<Box3>& boxes, double max_distance);
+std::vector<SrsUse> interpret_srs(const FileRecord& file, const Crs& assumed, CrsBook& book);
 
 /// A box's ring, `kPointsPerSide` points on each side, counter-clockwise, not closed.
 inline constexpr int kPointsPerSide = 21;

@@ -30,18 +30,18 @@ bool overlap(const Box3& a, const Box3& b) {
   return a.min.x <= b.max.x && a.max.x >= b.min.x && a.min.y <= b.max.y && a.max.y >= b.min.y;
 }
 
+// Beyond any rounding of coordinates, in the unit of the file's axes.
+constexpr double kBoxMargin = 1e-6;
+
 class Planner {
  public:
-  Planner(const std::vector<std::shared_ptr<const FileScan>>& scans, const BuildingQuery& query,
-          const Crs& assumed)
-      : query_(query) {
-    for (const auto& scan : scans)
-      plan_.files.push_back({scan, interpret_srs(*scan, assumed, book_),
-                             std::vector<bool>(scan->buildings.size(), false)});
-  }
+  Planner(Catalogue& catalogue, const BuildingQuery& query, const Crs& assumed,
+          const RunContext& context)
+      : catalogue_(catalogue), query_(query), assumed_(assumed), context_(context) {}
 
   Result<Plan> make() {
     if (auto checked = check_query(); !checked) return checked.error();
+    if (auto listed = list_files(); !listed) return listed.error();
     if (auto found = find_working_crs(); !found) return found.error();
     if (auto chosen = choose(); !chosen) return chosen.error();
     if (auto agreed = agree_on_crs(); !agreed) return agreed.error();
@@ -56,6 +56,20 @@ class Planner {
     Crs crs{};
     std::optional<Error> problem{};
   };
+
+  Result<void> list_files() {
+    auto files = catalogue_.files(query_.bbox.has_value(), context_);
+    if (!files) return files.error();
+    for (auto& record : *files) {
+      if (record->found_in_folder && record->facts.not_a_city_model) {
+        passed_over_.push_back(record->name + " is no city model, passed over");
+        continue;
+      }
+      auto srs = interpret_srs(*record, assumed_, book_);
+      plan_.files.push_back({std::move(record), std::move(srs), {}});
+    }
+    return {};
+  }
 
   Result<void> check_query() {
     if (query_.crs.known()) {
@@ -87,7 +101,7 @@ class Planner {
   // The declared extent of a file in its own CRS, x east; empty when it says nothing or something
   // that the buildings contradict.
   Box3 declared_extent(const Plan::File& file, std::uint32_t srs) const {
-    const DocumentFacts& facts = file.scan->facts;
+    const DocumentFacts& facts = file.record->facts;
     const bool about_it = facts.declared_srs == srs || facts.declared_srs == 0;
     if (!about_it || facts.declared_extent.is_empty()) return {};
     const Box3 box =
@@ -140,53 +154,109 @@ class Planner {
   Result<void> choose() {
     const std::unordered_set<std::string> wanted(query_.object_ids.begin(),
                                                  query_.object_ids.end());
-    std::unordered_set<std::string> found;
-    std::set<std::string> unplaced;  // files whose buildings a box cannot be compared with
-    bool placed_any = false;
     for (Plan::File& file : plan_.files) {
-      const FileScan& scan = *file.scan;
-      for (std::size_t b = 0; b < scan.buildings.size(); ++b) {
-        const ScannedBuilding& building = scan.buildings[b];
-        if (!wanted.empty()) {
-          bool any = wanted.contains(building.gml_id);
-          if (any) found.insert(building.gml_id);
-          for (const std::string& part : building.part_ids)
-            if (wanted.contains(part)) {
-              found.insert(part);
-              any = true;
-            }
-          if (!any) continue;
-        }
-        if (query_.bbox) {
-          const SrsUse& use = file.srs[building.srs];
-          const auto place = workplaces_.find(source_crs(use, query_).id);
-          if (building.extent.is_empty() || !use.problem.empty() || place == workplaces_.end() ||
-              place->second.problem)
-            continue;
-          if (query_.bbox->crs.known() && !place->second.crs.known()) {
-            unplaced.insert(scan.path.filename().string());
-            continue;
-          }
-          placed_any = true;
-          auto inside = is_inside(scan, building, use, place->second.crs);
-          if (!inside) return inside.error();
-          if (!*inside) continue;
-        }
-        file.selected[b] = true;
+      RecordQuery records;
+      records.with_footprints = query_.bbox.has_value();
+      if (query_.bbox) {
+        auto box = box_in(file);
+        if (!box) return box.error();
+        if (!*box && wanted.empty()) continue;
+        records.box = *box;
       }
+      if (!wanted.empty()) {  // also those outside of the box, to tell them from those that are not
+                              // there
+        records.ids = &wanted;
+        records.box.reset();
+      }
+      auto chosen = catalogue_.buildings(
+          *file.record, records,
+          [&](const BuildingRecord& building) { return choose(file, building, wanted); });
+      if (!chosen) return chosen;
     }
-    if (!unplaced.empty()) {
-      const std::string text = joined(unplaced) + (unplaced.size() == 1 ? " states" : " state") +
+    if (!unplaced_.empty()) {
+      const std::string text = joined(unplaced_) + (unplaced_.size() == 1 ? " states" : " state") +
                                " no CRS that a bbox in " + query_.bbox->crs.id +
                                " can be compared with";
-      if (!placed_any)
+      if (!placed_any_)
         return fail(ErrorCode::InvalidArgument,
                     text + ": name the CRS of the data with `crs`, for example crs=EPSG:25833");
       plan_.selection.warnings.push_back(text + "; left out, name their CRS with `crs`");
     }
     for (const std::string& id : query_.object_ids)
-      if (!found.contains(id)) plan_.selection.missing_ids.push_back(id);
+      if (!found_ids_.contains(id)) plan_.selection.missing_ids.push_back(id);
     return {};
+  }
+
+  Result<void> choose(Plan::File& file, const BuildingRecord& building,
+                      const std::unordered_set<std::string>& wanted) {
+    if (context_.stopped()) return fail(ErrorCode::Cancelled, "selecting was stopped");
+    if (!wanted.empty()) {
+      bool any = wanted.contains(building.gml_id);
+      if (any) found_ids_.insert(building.gml_id);
+      for (const std::string& part : building.part_ids)
+        if (wanted.contains(part)) {
+          found_ids_.insert(part);
+          any = true;
+        }
+      if (!any) return {};
+    }
+    if (query_.bbox) {
+      const SrsUse& use = file.srs[building.srs];
+      const Workplace* place = workplace_of(use);
+      if (building.extent.is_empty() || !place) return {};
+      if (query_.bbox->crs.known() && !place->crs.known()) return {};
+      placed_any_ = true;
+      auto inside = is_inside(building, use, place->crs);
+      if (!inside) return inside.error();
+      if (!*inside) return {};
+    }
+    file.selected.push_back(building);
+    file.selected.back().footprint = {};
+    return {};
+  }
+
+  // Where buildings with this CRS name are worked on; null where they cannot be.
+  const Workplace* workplace_of(const SrsUse& use) const {
+    if (!use.problem.empty()) return nullptr;
+    const auto place = workplaces_.find(source_crs(use, query_).id);
+    return place == workplaces_.end() || place->second.problem ? nullptr : &place->second;
+  }
+
+  // The request's box as the coordinates of a file may meet it, a little too large rather than too
+  // small; none: no building of the file can meet it.
+  Result<std::optional<FlatBox>> box_in(const Plan::File& file) {
+    Box3 whole;
+    for (std::size_t s = 0; s < file.srs.size(); ++s) {
+      const SrsUse& use = file.srs[s];
+      const SrsExtent& extent = file.record->srs[s];
+      const Workplace* place = workplace_of(use);
+      if (!place || extent.buildings == 0) continue;
+      if (query_.bbox->crs.known() && !place->crs.known()) {
+        unplaced_.insert(file.record->name);
+        continue;
+      }
+      placed_any_ = true;
+      const auto area = area_in(place->crs);
+      if (!area) return area.error();
+      const Point2 &low = (*area)->min(), &high = (*area)->max();
+      auto ring = densified_ring(low.x, low.y, high.x, high.y);
+      const auto& back = book_.transformer(place->crs, source_crs(use, query_));
+      Box3 box;
+      if (back && back->apply(ring)) {
+        for (const Point3& point : ring) box.add(point);
+        const double margin =
+            0.02 * std::max(box.max.x - box.min.x, box.max.y - box.min.y) + kBoxMargin;
+        box.add(Point3{box.min.x - margin, box.min.y - margin, 0});
+        box.add(Point3{box.max.x + margin, box.max.y + margin, 0});
+        if (use.swap_axes) box = with_axes_swapped(box);
+        if (!overlap(box, extent.all)) continue;
+      } else {
+        box = extent.all;
+      }
+      whole.add(box);
+    }
+    if (whole.is_empty()) return std::optional<FlatBox>{};
+    return std::optional(FlatBox{{whole.min.x, whole.min.y}, {whole.max.x, whole.max.y}});
   }
 
   bool z_fits(const Box3& extent) const {
@@ -204,8 +274,7 @@ class Planner {
     return false;
   }
 
-  Result<bool> is_inside(const FileScan& scan, const ScannedBuilding& building, const SrsUse& use,
-                         const Crs& working) {
+  Result<bool> is_inside(const BuildingRecord& building, const SrsUse& use, const Crs& working) {
     if (!z_fits(building.extent)) return false;
     const auto area = area_in(working);
     if (!area) return area.error();
@@ -230,12 +299,12 @@ class Planner {
     if (!(*area)->box_touches({envelope.min.x - margin, envelope.min.y - margin},
                               {envelope.max.x + margin, envelope.max.y + margin}))
       return false;
-    return footprint_inside(scan, building, use, *transformer, **area);
+    return footprint_inside(building.footprint, use, *transformer, **area);
   }
 
-  bool footprint_inside(const FileScan& scan, const ScannedBuilding& building, const SrsUse& use,
+  bool footprint_inside(const Footprints& footprint, const SrsUse& use,
                         const Transformer& transformer, const Area& area) {
-    const std::span rings(scan.footprints.rings.data() + building.first_ring, building.ring_count);
+    const std::span rings(footprint.rings);
     const bool within = query_.bbox_rule == BboxRule::Within;
     bool any = false;
     for (std::size_t r = 0; r < rings.size();) {
@@ -247,7 +316,7 @@ class Planner {
         polygon.push_back(
             {static_cast<std::uint32_t>(points_.size()), rings[i].count, rings[i].exterior});
         for (std::uint32_t p = 0; p < rings[i].count; ++p) {
-          const Point2& point = scan.footprints.points[rings[i].first + p];
+          const Point2& point = footprint.points[rings[i].first + p];
           points_.push_back(use.swap_axes ? Point3{point.y, point.x, 0}
                                           : Point3{point.x, point.y, 0});
         }
@@ -272,10 +341,9 @@ class Planner {
     std::map<std::string, std::string> found;  // working CRS -> source CRS
     std::optional<Error> problem;
     for (const Plan::File& file : plan_.files)
-      for (std::size_t b = 0; b < file.selected.size(); ++b) {
-        const ScannedBuilding& building = file.scan->buildings[b];
+      for (const BuildingRecord& building : file.selected) {
         const SrsUse& use = file.srs[building.srs];
-        if (!file.selected[b] || building.extent.is_empty() || !use.problem.empty()) continue;
+        if (building.extent.is_empty() || !use.problem.empty()) continue;
         const auto place = workplaces_.find(source_crs(use, query_).id);
         if (place == workplaces_.end()) continue;
         if (place->second.problem && !problem) problem = place->second.problem;
@@ -339,53 +407,59 @@ class Planner {
     Selection& selection = plan_.selection;
     std::set<std::string> unstated, assumed;
     for (const Plan::File& file : plan_.files) {
-      const FileScan& scan = *file.scan;
-      const std::string name = scan.path.filename().string();
-      InputReport report{.file = name,
-                         .format = scan.facts.format,
-                         .state = scan.facts.failure.empty() ? "read" : "failed",
-                         .message = scan.facts.failure};
-      report.buildings = scan.buildings.size();
+      const FileRecord& record = *file.record;
+      InputReport report{.file = record.name,
+                         .format = record.facts.format,
+                         .state = record.facts.failure.empty() ? "read" : "failed",
+                         .message = record.facts.failure};
+      report.buildings = record.buildings;
       std::set<std::string> crs_names, problems;
-      for (const ScannedBuilding& building : scan.buildings) {
-        if (building.extent.is_empty()) continue;
-        const SrsUse& use = file.srs[building.srs];
+      for (std::size_t s = 0; s < file.srs.size(); ++s) {
+        if (record.srs[s].buildings == 0) continue;
+        const SrsUse& use = file.srs[s];
         if (!use.problem.empty()) {
           problems.insert(use.problem);
           continue;
         }
         if (!use.crs.id.empty()) crs_names.insert(use.crs.id);
-        if (!use.crs.known()) (query_.crs.known() ? assumed : unstated).insert(name);
+        if (!use.crs.known()) (query_.crs.known() ? assumed : unstated).insert(record.name);
       }
       report.crs = joined(crs_names);
       for (const std::string& problem : problems)
-        selection.warnings.push_back(name + ": " + problem);
-      if (scan.facts.skipped_objects > 0)
-        selection.warnings.push_back(name + ": " + std::to_string(scan.facts.skipped_objects) +
+        selection.warnings.push_back(record.name + ": " + problem);
+      if (record.facts.skipped_objects > 0)
+        selection.warnings.push_back(record.name + ": " +
+                                     std::to_string(record.facts.skipped_objects) +
                                      " objects of extension types were not read");
       selection.inputs.push_back(std::move(report));
 
-      for (std::size_t b = 0; b < file.selected.size(); ++b) {
-        if (!file.selected[b]) continue;
-        ++selection.buildings;
-        const ScannedBuilding& building = scan.buildings[b];
+      selection.buildings += file.selected.size();
+      for (const BuildingRecord& building : file.selected) {
         selection.object_ids.push_back(building.gml_id);
         selection.object_ids.insert(selection.object_ids.end(), building.part_ids.begin(),
                                     building.part_ids.end());
       }
     }
+    selection.warnings.insert(selection.warnings.end(), passed_over_.begin(), passed_over_.end());
     if (!unstated.empty())
       selection.warnings.push_back(joined(unstated) + ": no CRS stated, metres assumed");
     if (!assumed.empty())
       selection.warnings.push_back(joined(assumed) + ": no CRS stated, taken as " + query_.crs.id);
   }
 
+  Catalogue& catalogue_;
   const BuildingQuery& query_;
+  const Crs& assumed_;
+  const RunContext& context_;
   CrsBook book_{};
   Plan plan_{};
   std::map<std::string, Workplace> workplaces_{};  ///< by source CRS
   std::map<std::string, Area> areas_{};            ///< by working CRS
   std::vector<Point3> points_{};
+  std::vector<std::string> passed_over_{};
+  std::set<std::string> unplaced_{};  ///< files whose buildings a box cannot be compared with
+  std::unordered_set<std::string> found_ids_{};
+  bool placed_any_ = false;
 };
 
 }  // namespace
@@ -394,9 +468,9 @@ Crs source_crs(const SrsUse& use, const BuildingQuery& query) {
   return use.crs.known() || !query.crs.known() ? use.crs : query.crs;
 }
 
-Result<Plan> make_plan(const std::vector<std::shared_ptr<const FileScan>>& scans,
-                       const BuildingQuery& query, const Crs& assumed_crs) {
-  return Planner(scans, query, assumed_crs).make();
+Result<Plan> make_plan(Catalogue& catalogue, const BuildingQuery& query, const Crs& assumed_crs,
+                       const RunContext& context) {
+  return Planner(catalogue, query, assumed_crs, context).make();
 }
 
 }  // namespace citymesh::source

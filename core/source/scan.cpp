@@ -70,10 +70,13 @@ class FootprintFinder {
   std::vector<bool> taken_{};
 };
 
-ScannedBuilding summary(const Feature& feature) {
-  ScannedBuilding building;
+BuildingRecord summary(const Feature& feature) {
+  BuildingRecord building;
   building.gml_id = feature.objects.front().gml_id;
   building.srs = feature.srs;
+  building.bytes = feature.bytes;
+  building.envelope = feature.envelope;
+  building.borrowed.assign(feature.borrowed.begin(), feature.borrowed.end());
   for (std::size_t i = 1; i < feature.objects.size(); ++i)
     building.part_ids.push_back(feature.objects[i].gml_id);
   for (const RawObject& object : feature.objects)
@@ -91,53 +94,113 @@ ScannedBuilding summary(const Feature& feature) {
 }
 
 Result<void> read_through(FileScan& scan, DocumentOptions options, bool with_footprints) {
-  scan.buildings.clear();
-  scan.footprints = {};
+  scan.records.clear();
   scan.has_footprints = with_footprints;
   options.shared = scan.shared.get();
-  return read_document(
-      scan.path, *scan.format, options, scan.facts, [&](Feature& feature) -> Result<void> {
-        ScannedBuilding& building = scan.buildings.emplace_back(summary(feature));
-        if (!with_footprints) return {};
-        building.first_ring = static_cast<std::uint32_t>(scan.footprints.rings.size());
-        FootprintFinder(feature).add_to(scan.footprints);
-        building.ring_count =
-            static_cast<std::uint32_t>(scan.footprints.rings.size()) - building.first_ring;
-        return {};
-      });
+  return read_document(scan.text, *scan.format, options, scan.facts,
+                       [&](Feature& feature) -> Result<void> {
+                         BuildingRecord building = summary(feature);
+                         building.number = scan.records.size();
+                         if (!scan.records.empty() && building.bytes.known() &&
+                             building.bytes == scan.records.back().bytes)
+                           building.nth_of_piece = scan.records.back().nth_of_piece + 1;
+                         if (with_footprints) FootprintFinder(feature).add_to(building.footprint);
+                         scan.records.push_back(std::move(building));
+                         return {};
+                       });
+}
+
+Result<void> find_shared_geometry(FileScan& scan, const DocumentOptions& options) {
+  auto bytes = ByteReader::open(scan.text, options.limits.max_file_bytes);
+  if (!bytes) return {};
+  auto shared = std::make_shared<SharedGeometry>();
+  DocumentFacts facts;
+  facts.srs_names = std::move(scan.facts.srs_names);
+  if (auto collected =
+          collect_shared_geometry(*bytes, options, scan.facts.unresolved, facts, *shared);
+      !collected)
+    return collected;
+  scan.facts = {};
+  scan.facts.srs_names = std::move(facts.srs_names);
+  scan.facts.envelopes = std::move(facts.envelopes);
+  for (const auto& [id, place] : shared->places) scan.shared_places.emplace(id, place);
+  scan.shared = std::move(shared);
+  return {};
+}
+
+// No building of a city is further from the middle of it.
+constexpr double kAstray_m = 200'000.0;
+constexpr double kAstray_deg = 2.0;
+
+Point2 centre_of(const Box3& box) {
+  return {(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2};
+}
+
+// The extent without the boxes that are far from the median centre: one stray building must not
+// move the origin.
+Box3 robust_extent(const std::vector<const Box3*>& boxes, double max_distance) {
+  std::vector<double> xs, ys;
+  for (const Box3* box : boxes) {
+    xs.push_back(centre_of(*box).x);
+    ys.push_back(centre_of(*box).y);
+  }
+  const auto middle = static_cast<std::ptrdiff_t>(boxes.size() / 2);
+  std::nth_element(xs.begin(), xs.begin() + middle, xs.end());
+  std::nth_element(ys.begin(), ys.begin() + middle, ys.end());
+  const double x = xs[boxes.size() / 2], y = ys[boxes.size() / 2];
+  Box3 extent;
+  for (const Box3* box : boxes)
+    if (box->min.x >= x - max_distance && box->max.x <= x + max_distance &&
+        box->min.y >= y - max_distance && box->max.y <= y + max_distance)
+      extent.add(*box);
+  return extent;
+}
+
+void sum_up(FileScan& scan) {
+  scan.buildings = scan.records.size();
+  scan.srs.assign(scan.facts.srs_names.size(), {});
+  for (std::uint32_t s = 0; s < scan.srs.size(); ++s) {
+    std::vector<const Box3*> boxes;
+    for (const BuildingRecord& building : scan.records)
+      if (building.srs == s && !building.extent.is_empty()) boxes.push_back(&building.extent);
+    if (boxes.empty()) continue;
+    SrsExtent& srs = scan.srs[s];
+    srs.buildings = boxes.size();
+    for (const Box3* box : boxes) srs.all.add(*box);
+    srs.near_m = robust_extent(boxes, kAstray_m);
+    srs.near_deg = robust_extent(boxes, kAstray_deg);
+  }
 }
 
 }  // namespace
 
-Result<FileScan> scan_file(const std::filesystem::path& path, const ReadLimits& limits,
-                           bool with_footprints, const std::stop_token& stop) {
-  FileScan scan{.path = path};
-  const auto format = detect_format(path, limits);
+FileRecord plain_file(const std::filesystem::path& path) {
+  return {.path = path, .name = path.filename().string(), .text = path};
+}
+
+Result<FileScan> scan_file(FileRecord file, const ReadLimits& limits, bool with_footprints,
+                           const std::stop_token& stop) {
+  FileScan scan{std::move(file)};
+  const auto format = detect_format(scan.text, limits);
   if (!format) {
     scan.facts.failure = format.error().message;
     scan.facts.not_a_city_model = format.error().code == ErrorCode::InvalidArgument;
+    sum_up(scan);
     return scan;
   }
   scan.format = *format;
-  const DocumentOptions options{.limits = limits, .stem = file_stem(path), .stop = stop};
+  const DocumentOptions options{.limits = limits, .stem = file_stem(scan.name), .stop = stop};
+  const auto packed = is_gzip(scan.text);
+  const bool in_pieces = packed && !*packed;
   if (auto read = read_through(scan, options, with_footprints); !read) return read.error();
-  if (scan.facts.unresolved.empty()) return scan;
-
-  // Some features refer to geometry of others: find it and look again.
-  auto shared = std::make_shared<SharedGeometry>();
-  auto bytes = ByteReader::open(path, limits.max_file_bytes);
-  if (!bytes) return scan;
-  DocumentFacts facts;
-  facts.srs_names = scan.facts.srs_names;
-  if (auto collected =
-          collect_shared_geometry(*bytes, options, scan.facts.unresolved, facts, *shared);
-      !collected)
-    return collected.error();
-  if (shared->by_id.empty()) return scan;
-  scan.shared = std::move(shared);
-  scan.facts = {};
-  scan.facts.srs_names = std::move(facts.srs_names);
-  if (auto read = read_through(scan, options, with_footprints); !read) return read.error();
+  if (!scan.facts.unresolved.empty()) {
+    // Some features refer to geometry of others: find it and look again.
+    if (auto found = find_shared_geometry(scan, options); !found) return found.error();
+    if (auto read = read_through(scan, options, with_footprints); !read) return read.error();
+  }
+  if (!in_pieces)  // places in the unpacked text lead nowhere
+    for (BuildingRecord& building : scan.records) building.bytes = {};
+  sum_up(scan);
   return scan;
 }
 

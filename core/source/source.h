@@ -48,6 +48,7 @@ struct Selection {
   std::vector<std::string>
       object_ids{};  ///< gml_id of every selected building and part, in reading order, repeated
                      ///< ids included; from these names are made before anything is written
+  std::shared_ptr<const void> details{};  ///< for the source that made it
 };
 
 /// Takes one top-level building with its parts. Returning an error ends the reading with it.

@@ -40,7 +40,7 @@ inline void read_bytes(const std::uint8_t* data, std::size_t size) {
   limits.max_building_bytes = 1u << 20;
   limits.max_points_per_building = 20'000;
 
-  const auto scan = scan_file(file.path(), limits, true, {});
+  const auto scan = scan_file(plain_file(file.path()), limits, true, {});
   if (!scan || !scan->format) return;
   std::vector<SrsPlacement> placements(scan->facts.srs_names.size());
   for (SrsPlacement& placement : placements) {
@@ -81,7 +81,7 @@ inline void read_bytes(const std::uint8_t* data, std::size_t size) {
                                     check(maker.make(feature));
                                     return {};
                                   });
-  if (!read || count != scan->buildings.size()) abort();
+  if (!read || count != scan->records.size()) abort();
 }
 
 }  // namespace citymesh::source

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/source/catalogue.h"
+
+namespace citymesh::source {
+
+/// The files that are named, and those directly in the folders that are named in the order of their
+/// names, hidden ones left out; nothing in them has been looked at. Errors: NotFound,
+/// PermissionDenied, FailedPrecondition naming the path.
+Result<std::vector<FileRecord>> list_files(const std::vector<std::filesystem::path>& paths);
+
+}  // namespace citymesh::source
