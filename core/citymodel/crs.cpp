@@ -4,187 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
-#include <optional>
+#include <string>
 #include <utility>
-#include <vector>
-
-#include "core/base/text.h"
 
 namespace citymesh {
 namespace {
-
-// ---- spelling ----------------------------------------------------------------------------------
-
-struct NamedCode {
-  std::string_view name;
-  int epsg;
-};
-
-// AdV GeoInfoDok names of the German surveys, horizontal part.
-constexpr std::array kAdvHorizontal{
-    NamedCode{"ETRS89_UTM31", 25831},          NamedCode{"ETRS89_UTM32", 25832},
-    NamedCode{"ETRS89_UTM33", 25833},          NamedCode{"ETRS89_Lat-Lon", 4258},
-    NamedCode{"ETRS89_Lat-Lon-h", 4937},       NamedCode{"DE_DHDN_3GK2", 31466},
-    NamedCode{"DE_DHDN_3GK3", 31467},          NamedCode{"DE_DHDN_3GK4", 31468},
-    NamedCode{"DE_DHDN_3GK5", 31469},          NamedCode{"DE_DHDN_Lat-Lon", 4314},
-    NamedCode{"DE_PD-83_3GK3", 3396},          NamedCode{"DE_PD-83_3GK4", 3397},
-    NamedCode{"DE_RD-83_3GK4", 3398},          NamedCode{"DE_RD-83_3GK5", 3399},
-    NamedCode{"DE_42-83_3GK3", 2397},          NamedCode{"DE_42-83_3GK4", 2398},
-    NamedCode{"DE_42-83_3GK5", 2399},          NamedCode{"DE_DHDN_Soldner-Berlin", 3068},
-    NamedCode{"DE_DHDN_SOLDNER-BERLIN", 3068}, NamedCode{"DE_Soldner-Berlin", 3068},
-};
-
-// AdV names, vertical part. Both DE_DHHN92_NH and DE_DHN92_NH occur in files.
-constexpr std::array kAdvVertical{
-    NamedCode{"DE_DHHN12_NN", 7699},    NamedCode{"DE_DHHN12_NOH", 7699},
-    NamedCode{"DE_DHHN85_NN", 5784},    NamedCode{"DE_DHHN85_NOH", 5784},
-    NamedCode{"DE_DHHN92_NH", 5783},    NamedCode{"DE_DHHN92_NHN", 5783},
-    NamedCode{"DE_DHN92_NH", 5783},     NamedCode{"DE_DHHN2016_NH", 7837},
-    NamedCode{"DE_DHHN2016_NHN", 7837}, NamedCode{"DE_SNN76_NH", 5785},
-    NamedCode{"DE_SNN76_NHN", 5785},
-};
-
-// Names without a code that occur as srsName.
-constexpr std::array kPlainNames{
-    NamedCode{"CH1903", 21781},
-    NamedCode{"CH1903_LV03", 21781},
-    NamedCode{"CH1903+", 2056},
-    NamedCode{"CH1903+_LV95", 2056},
-    NamedCode{"DHDN_Soldner_Berlin", 3068},
-};
-
-template <std::size_t N>
-std::optional<int> code_of(const std::array<NamedCode, N>& table, std::string_view name) {
-  for (const auto& entry : table)
-    if (entry.name == name) return entry.epsg;
-  return std::nullopt;
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
-
-bool is_code(std::string_view text) {
-  return !text.empty() && text.size() <= 9 &&
-         std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
-}
-
-std::string_view after_last(std::string_view text, char separator) {
-  const auto at = text.rfind(separator);
-  return at == std::string_view::npos ? text : text.substr(at + 1);
-}
-
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  for (;;) {
-    const auto at = text.find(separator);
-    parts.push_back(text.substr(0, at));
-    if (at == std::string_view::npos) return parts;
-    text.remove_prefix(at + 1);
-  }
-}
-
-// "EPSG:6.12:3068", "epsg::3068", "EPSG/0/3068" -> "3068"; "" when the authority is another one.
-std::string_view epsg_code(std::string_view text, char separator) {
-  const auto parts = split(text, separator);
-  if (parts.size() < 2 || lower(parts.front()) != "epsg" || !is_code(parts.back())) return {};
-  return parts.back();
-}
-
-std::string compound(std::string_view horizontal, std::string_view vertical) {
-  std::string id = "EPSG:" + std::string(horizontal);
-  if (!vertical.empty()) id += "+" + std::string(vertical);
-  return id;
-}
-
-// What follows "…/def/crs/" in an OGC URI, or "" when it is none.
-std::string_view uri_path(std::string_view uri) {
-  constexpr std::string_view kMark = "/def/crs/";
-  const auto at = uri.find(kMark);
-  return at == std::string_view::npos ? std::string_view{} : uri.substr(at + kMark.size());
-}
-
-std::string id_of(std::string_view name) {
-  const std::string small = lower(name);
-  const auto starts = [&](std::string_view prefix) { return small.rfind(prefix, 0) == 0; };
-
-  if (const auto code = code_of(kPlainNames, name)) return "EPSG:" + std::to_string(*code);
-  if (is_code(name)) return "EPSG:" + std::string(name);
-  if (name.front() == '#' || small.find("engineering") != std::string::npos || starts("local") ||
-      starts("urn:ogc:def:crs:local"))
-    return "LOCAL";
-  if (small == "crs84" || small == "ogc:crs84" || small == "crs:84" || small == "crs84h" ||
-      small == "ogc:crs84h")
-    return "OGC:CRS84";
-
-  if (starts("epsg:")) {
-    const auto parts = split(name, '+');
-    const auto horizontal = epsg_code(parts[0], ':');
-    if (horizontal.empty() || parts.size() > 2) return {};
-    if (parts.size() == 1) return compound(horizontal, {});
-    const auto vertical = is_code(parts[1]) ? parts[1] : epsg_code(parts[1], ':');
-    return vertical.empty() ? std::string{} : compound(horizontal, vertical);
-  }
-
-  for (const std::string_view prefix : {"urn:ogc:def:crs:", "urn:x-ogc:def:crs:"}) {
-    if (!starts(prefix)) continue;
-    const auto rest = name.substr(prefix.size());
-    if (const auto code = epsg_code(rest, ':'); !code.empty()) return compound(code, {});
-    if (starts(std::string(prefix) + "ogc:") && lower(after_last(rest, ':')).rfind("crs84", 0) == 0)
-      return "OGC:CRS84";
-    return {};
-  }
-
-  if (starts("urn:ogc:def:crs,") || starts("urn:x-ogc:def:crs,")) {
-    const auto parts = split(name, ',');  // urn:ogc:def:crs , crs:EPSG::h , crs:EPSG::v
-    if (parts.size() < 2 || parts.size() > 3) return {};
-    std::array<std::string_view, 2> codes{};
-    for (std::size_t i = 1; i < parts.size(); ++i) {
-      if (lower(parts[i].substr(0, 4)) != "crs:") return {};
-      codes[i - 1] = epsg_code(parts[i].substr(4), ':');
-      if (codes[i - 1].empty()) return {};
-    }
-    return compound(codes[0], codes[1]);
-  }
-
-  if (starts("urn:adv:crs:")) {
-    const auto parts = split(name.substr(std::string_view("urn:adv:crs:").size()), '*');
-    const auto horizontal = code_of(kAdvHorizontal, parts[0]);
-    if (!horizontal) return {};
-    if (parts.size() == 1) return compound(std::to_string(*horizontal), {});
-    const auto vertical = code_of(kAdvVertical, parts[1]);  // a third part names the geoid model
-    return vertical ? compound(std::to_string(*horizontal), std::to_string(*vertical))
-                    : std::string{};
-  }
-
-  if (starts("http://") || starts("https://")) {
-    if (const auto query = small.find("/def/crs-compound?"); query != std::string::npos) {
-      std::array<std::string_view, 2> codes{};
-      for (const auto part : split(name.substr(name.find('?') + 1), '&')) {
-        const auto path = uri_path(part);
-        const auto code = epsg_code(path, '/');
-        if (code.empty()) return {};
-        if (part.rfind("1=", 0) == 0) codes[0] = code;
-        if (part.rfind("2=", 0) == 0) codes[1] = code;
-      }
-      return codes[0].empty() ? std::string{} : compound(codes[0], codes[1]);
-    }
-    if (const auto path = uri_path(name); !path.empty()) {
-      if (const auto code = epsg_code(path, '/'); !code.empty()) return compound(code, {});
-      if (lower(after_last(path, '/')).rfind("crs84", 0) == 0) return "OGC:CRS84";
-      return {};
-    }
-    if (small.find("/gml/srs/epsg.xml#") != std::string::npos)
-      if (const auto code = after_last(name, '#'); is_code(code)) return compound(code, {});
-  }
-  return {};
-}
-
-// ---- PROJ --------------------------------------------------------------------------------------
 
 struct ContextDeleter {
   void operator()(PJ_CONTEXT* context) const { proj_context_destroy(context); }
@@ -217,6 +42,32 @@ Pj create_horizontal(PJ_CONTEXT* context, const Crs& crs) {
   return Pj(proj_crs_get_sub_crs(context, whole.get(), 0));
 }
 
+// The heights of a compound CRS; none where none are stated.
+Pj create_vertical(PJ_CONTEXT* context, const Crs& crs) {
+  if (!crs.known()) return nullptr;
+  const Pj whole(proj_create(context, crs.id.c_str()));
+  if (!whole || proj_get_type(whole.get()) != PJ_TYPE_COMPOUND_CRS) return nullptr;
+  return Pj(proj_crs_get_sub_crs(context, whole.get(), 1));
+}
+
+// "5703" of a CRS of EPSG, "" of another one.
+std::string epsg_code_of(const PJ* crs) {
+  const char* authority = crs ? proj_get_id_auth_name(crs, 0) : nullptr;
+  if (!authority || std::string_view(authority) != "EPSG") return {};
+  return proj_get_id_code(crs, 0);
+}
+
+// Metres in a unit of the axis; 1 where PROJ does not tell.
+double unit_of_axis(PJ_CONTEXT* context, const PJ* crs, int axis) {
+  const Pj axes(proj_crs_get_coordinate_system(context, crs));
+  double unit = 1.0;
+  if (!axes || axis >= proj_cs_get_axis_count(context, axes.get()) ||
+      !proj_cs_get_axis_info(context, axes.get(), axis, nullptr, nullptr, nullptr, &unit, nullptr,
+                             nullptr, nullptr))
+    return 1.0;
+  return unit;
+}
+
 // Below a bound CRS ("+towgs84") lies the CRS that has the axes.
 bool is_geographic(PJ_CONTEXT* context, const PJ* crs) {
   switch (proj_get_type(crs)) {
@@ -232,7 +83,7 @@ bool is_geographic(PJ_CONTEXT* context, const PJ* crs) {
   }
 }
 
-CrsFacts facts_of(PJ_CONTEXT* context, PJ* crs) {
+CrsFacts facts_of(PJ_CONTEXT* context, PJ* crs, const PJ* vertical) {
   CrsFacts facts;
   facts.name = proj_get_name(crs);
   facts.geographic = is_geographic(context, crs);
@@ -244,6 +95,17 @@ CrsFacts facts_of(PJ_CONTEXT* context, PJ* crs) {
                                     &unit_factor, nullptr, nullptr, nullptr)) {
     facts.north_first = direction && std::string_view(direction) == "north";
     if (!facts.geographic) facts.horizontal_unit_m = unit_factor;
+  }
+
+  constexpr int kHeightAxis = 2;
+  if (vertical) {
+    facts.vertical_name = proj_get_name(vertical);
+    facts.vertical_unit_m = unit_of_axis(context, vertical, 0);
+  } else if (axes && proj_cs_get_axis_count(context, axes.get()) > kHeightAxis) {
+    facts.vertical_name = "ellipsoidal height";
+    facts.vertical_unit_m = unit_of_axis(context, crs, kHeightAxis);
+  } else {
+    facts.vertical_unit_m = facts.horizontal_unit_m;
   }
 
   double west = 0, south = 0, east = 0, north = 0;
@@ -266,45 +128,77 @@ struct UtmSeries {
 };
 
 constexpr std::array kUtmSeries{
-    UtmSeries{"JGD2011", 6688 - 51, 51, 55, false}, UtmSeries{"JGD2000", 3097 - 51, 51, 55, false},
-    UtmSeries{"ETRS89", 25800, 28, 38, false},      UtmSeries{"WGS 84", 32600, 1, 60, false},
-    UtmSeries{"WGS 84", 32700, 1, 60, true},        UtmSeries{"NAD83", 26900, 1, 23, false},
-    UtmSeries{"GDA2020", 7846 - 46, 46, 59, true},  UtmSeries{"GDA94", 28300, 46, 59, true},
+    UtmSeries{"JGD2011", 6688 - 51, 51, 55, false},
+    UtmSeries{"JGD2000", 3097 - 51, 51, 55, false},
+    UtmSeries{"ETRS89", 25800, 28, 38, false},
+    UtmSeries{"WGS 84", 32600, 1, 60, false},
+    UtmSeries{"WGS 84", 32700, 1, 60, true},
+    UtmSeries{"NAD83", 26900, 1, 23, false},
+    UtmSeries{"NAD83(2011)", 6329, 1, 19, false},
+    UtmSeries{"NAD83(NSRS2007)", 3707, 1, 19, false},
+    UtmSeries{"NAD83(HARN)", 3730, 10, 19, false},
+    UtmSeries{"NAD27", 26700, 1, 22, false},
+    UtmSeries{"GDA2020", 7846 - 46, 46, 59, true},
+    UtmSeries{"GDA94", 28300, 46, 59, true},
+    UtmSeries{"SIRGAS 2000", 31954, 11, 22, false},
+    UtmSeries{"SIRGAS 2000", 31960, 17, 25, true},
 };
 
-}  // namespace
-
-Result<Crs> parse_crs(std::string_view srs_name) {
-  const auto name = trimmed(srs_name);
-  if (name.empty()) return Crs{};
-  std::string id = id_of(name);
-  if (id.empty())
-    return fail(ErrorCode::InvalidArgument,
-                "CRS name '" + std::string(name.substr(0, 200)) +
-                    "' is not understood, expected for example EPSG:25833, "
-                    "urn:ogc:def:crs:EPSG::25833 or urn:adv:crs:ETRS89_UTM33*DE_DHHN2016_NH");
-  return Crs{std::move(id)};
+// "WGS 84 (G1762)" is WGS 84, "NAD83(2011)" is another datum than NAD83.
+bool is_of_datum(std::string_view name, std::string_view datum) {
+  return name.starts_with(datum) && (name.size() == datum.size() || name[datum.size()] != '(');
 }
+
+// Heights in feet have a twin in metres; the others are not named any more.
+constexpr std::array kHeightsInMetres{
+    std::pair<std::string_view, std::string_view>{"6360", "5703"},  // NAVD88 (ftUS)
+    std::pair<std::string_view, std::string_view>{"8228", "5703"},  // NAVD88 (ft)
+};
+
+// The working CRS as an id: heights keep their CRS as they are not shifted.
+std::string with_heights_of(const std::string& horizontal, PJ_CONTEXT* context,
+                            const PJ* vertical) {
+  std::string code = epsg_code_of(vertical);
+  if (code.empty()) return horizontal;
+  if (unit_of_axis(context, vertical, 0) != 1.0) {
+    const auto twin = std::find_if(kHeightsInMetres.begin(), kHeightsInMetres.end(),
+                                   [&](const auto& entry) { return entry.first == code; });
+    if (twin == kHeightsInMetres.end()) return horizontal;
+    code = twin->second;
+  }
+  return horizontal + "+" + code;
+}
+
+}  // namespace
 
 Result<CrsFacts> describe_crs(const Crs& crs) {
   const Context context = new_context();
   const Pj object = create_horizontal(context.get(), crs);
   if (!object) return unknown_crs(crs);
-  return facts_of(context.get(), object.get());
+  const Pj vertical = create_vertical(context.get(), crs);
+  return facts_of(context.get(), object.get(), vertical.get());
 }
 
-Result<Crs> working_crs(const Crs& crs, const Point3& centre_deg) {
+Result<Crs> working_crs(const Crs& crs, const Point3& centre) {
   if (!crs.known()) return crs;
   const Context context = new_context();
   const Pj object = create_horizontal(context.get(), crs);
   if (!object) return unknown_crs(crs);
-  const CrsFacts facts = facts_of(context.get(), object.get());
+  const Pj vertical = create_vertical(context.get(), crs);
+  const CrsFacts facts = facts_of(context.get(), object.get(), vertical.get());
+  Point3 centre_deg = centre;
+  std::string datum = facts.name;
   if (!facts.geographic) {
-    if (facts.horizontal_unit_m == 1.0) return crs;
-    return fail(ErrorCode::InvalidArgument,
-                "CRS '" + crs.id + "' (" + facts.name + ") has axes in units of " +
-                    std::to_string(facts.horizontal_unit_m) +
-                    " m, expected a projected CRS in metres: name one with `crs`");
+    if (facts.horizontal_unit_m == 1.0) {
+      if (facts.vertical_unit_m == 1.0) return crs;
+      return Crs{
+          with_heights_of("EPSG:" + epsg_code_of(object.get()), context.get(), vertical.get())};
+    }
+    const Pj geographic(proj_crs_get_geodetic_crs(context.get(), object.get()));
+    if (geographic) datum = proj_get_name(geographic.get());
+    auto to_degrees = Transformer::create(crs, Crs{"OGC:CRS84"});
+    if (!to_degrees) return to_degrees.error();
+    if (auto moved = to_degrees->apply(std::span(&centre_deg, 1)); !moved) return moved.error();
   }
 
   if (!std::isfinite(centre_deg.x) || !std::isfinite(centre_deg.y) ||
@@ -316,9 +210,10 @@ Result<Crs> working_crs(const Crs& crs, const Point3& centre_deg) {
   const int zone = std::min(60, static_cast<int>(turned / 6.0) + 1);
   const bool south = centre_deg.y < 0;
   for (const UtmSeries& series : kUtmSeries) {
-    if (facts.name.rfind(series.datum, 0) != 0 || series.south != south) continue;
+    if (!is_of_datum(datum, series.datum) || series.south != south) continue;
     if (zone < series.first_zone || zone > series.last_zone) continue;
-    return Crs{"EPSG:" + std::to_string(series.base + zone)};
+    return Crs{with_heights_of("EPSG:" + std::to_string(series.base + zone), context.get(),
+                               vertical.get())};
   }
   return fail(ErrorCode::InvalidArgument,
               "no UTM zone of the datum of '" + crs.id + "' (" + facts.name + ") at longitude " +
@@ -326,9 +221,18 @@ Result<Crs> working_crs(const Crs& crs, const Point3& centre_deg) {
                   " is known here: name a projected CRS in metres with `crs`");
 }
 
+Crs with_vertical(const Crs& crs, const Crs& heights) {
+  if (!crs.known() || crs.id.find('+') != std::string::npos) return crs;
+  const Context context = new_context();
+  if (create_vertical(context.get(), crs)) return crs;  // a compound CRS with a code of its own
+  const Pj vertical = create_vertical(context.get(), heights);
+  return Crs{with_heights_of(crs.id, context.get(), vertical.get())};
+}
+
 struct Transformer::Impl {
   Context context{};
-  Pj operation{};  ///< none: identity
+  Pj operation{};  ///< none: x and y stay
+  double z_factor = 1.0;
   std::string from{}, to{};
 };
 
@@ -349,6 +253,11 @@ Result<Transformer> Transformer::create(const Crs& from, const Crs& to) {
   if (!source) return unknown_crs(from);
   const Pj target = create_horizontal(context, to);
   if (!target) return unknown_crs(to);
+  const auto height_unit_m = [&](const Crs& crs, PJ* horizontal) {
+    const Pj vertical = create_vertical(context, crs);
+    return facts_of(context, horizontal, vertical.get()).vertical_unit_m;
+  };
+  impl->z_factor = height_unit_m(from, source.get()) / height_unit_m(to, target.get());
   if (proj_is_equivalent_to_with_ctx(context, source.get(), target.get(),
                                      PJ_COMP_EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS))
     return Transformer(std::move(impl));
@@ -362,9 +271,11 @@ Result<Transformer> Transformer::create(const Crs& from, const Crs& to) {
   return Transformer(std::move(impl));
 }
 
-bool Transformer::is_identity() const { return !impl_->operation; }
+bool Transformer::is_identity() const { return !impl_->operation && impl_->z_factor == 1.0; }
 
 Result<void> Transformer::apply(std::span<Point3> points) const {
+  if (impl_->z_factor != 1.0)
+    for (Point3& point : points) point.z *= impl_->z_factor;
   if (!impl_->operation) return {};
   for (Point3& point : points) {
     const PJ_COORD moved =

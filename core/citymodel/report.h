@@ -56,6 +56,8 @@ struct RunReport {
   std::string version{};
   std::string options_json{};  ///< all options with the values used, a JSON object
   Crs crs{};
+  std::vector<std::string> source_crs{};  ///< ids of the CRSs that the inputs use
+  std::string vertical_crs{};  ///< name of the CRS of the heights; "" where none is stated
   Point3 origin{};
   std::vector<InputReport> inputs{};
   Counts counts{};

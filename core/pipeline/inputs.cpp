@@ -216,6 +216,18 @@ Result<Inputs> read_inputs(std::string_view canonical_json) {
               name));
     inputs.query.crs = *crs;
   }
+  if (const std::string name = given.value("source_crs", ""); !name.empty()) {
+    auto crs = parse_crs(name);
+    if (!crs) return fail(ErrorCode::InvalidArgument, "input `source_crs`: " + crs.error().message);
+    if (crs->known())
+      if (auto facts = describe_crs(*crs); !facts)
+        return fail(ErrorCode::InvalidArgument, "input `source_crs`: " + facts.error().message);
+    inputs.query.source_crs = *crs;
+  }
+  const std::string order = given.value("axis_order", "auto");
+  inputs.query.axis_order = order == "east_north"   ? AxisOrder::EastNorth
+                            : order == "north_east" ? AxisOrder::NorthEast
+                                                    : AxisOrder::Auto;
   for (const std::string& text : given.value("lod", std::vector<std::string>{})) {
     const auto lod = lod_from(text);
     if (!lod)

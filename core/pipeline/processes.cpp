@@ -6,6 +6,7 @@ namespace citymesh {
 namespace {
 
 constexpr std::array<std::string_view, 3> kBboxRules{"intersects", "centre", "within"};
+constexpr std::array<std::string_view, 3> kAxisOrders{"auto", "east_north", "north_east"};
 constexpr std::array<std::string_view, 2> kInstallations{"drop", "keep"};
 constexpr std::array<std::string_view, 2> kOnFailure{"block", "drop"};
 constexpr std::array<std::string_view, 2> kPatches{"by_object", "by_type"};
@@ -25,8 +26,16 @@ constexpr OptionSpec kObjectIds{
     "gml_id of the buildings wanted; with a box, both must hold. Empty: all."};
 constexpr OptionSpec kCrs{
     "crs", OptionKind::Text, "\"\"",
-    "Working CRS of the result, for example EPSG:25833. Empty: that of the source; geographic "
-    "sources go to the UTM zone of the same datum."};
+    "Working CRS of the result, for example EPSG:25833. Empty: that of the source; sources in "
+    "degrees or feet go to the UTM zone of the same datum."};
+constexpr OptionSpec kSourceCrs{
+    "source_crs", OptionKind::Text, "\"\"",
+    "CRS of inputs that state none, for example EPSG:28992; a stated one is never replaced."};
+constexpr OptionSpec kAxisOrder{
+    "axis_order", OptionKind::Text, "\"auto\"",
+    "Order in which the inputs store coordinates. auto: latitude first for geographic CRSs, east "
+    "first for projected ones, the other way round where only that lies in the area of use.",
+    kAxisOrders};
 constexpr OptionSpec kLod{
     "lod", OptionKind::TextList, "[\"2\",\"3\",\"1\",\"0\"]",
     "Levels of detail in order of preference; \"2\" means the highest 2.x there is."};
@@ -70,10 +79,11 @@ constexpr OptionSpec kDisplacement{
     0.0001,
     10.0};
 
-constexpr std::array kExportInputs{kBbox,         kBboxRule,  kObjectIds,   kCrs,   kLod,
-                                   kInstallation, kFormat,    kFailure,     kUnite, kPatch,
-                                   kSnap,         kPlanarity, kDisplacement};
-constexpr std::array kValidateInputs{kBbox, kBboxRule, kObjectIds, kCrs, kLod, kSnap, kPlanarity};
+constexpr std::array kExportInputs{kBbox,      kBboxRule, kObjectIds,    kCrs,       kSourceCrs,
+                                   kAxisOrder, kLod,      kInstallation, kFormat,    kFailure,
+                                   kUnite,     kPatch,    kSnap,         kPlanarity, kDisplacement};
+constexpr std::array kValidateInputs{kBbox,      kBboxRule, kObjectIds, kCrs,      kSourceCrs,
+                                     kAxisOrder, kLod,      kSnap,      kPlanarity};
 
 constexpr OutputSpec kReportOutput{"report", "application/json",
                                    "What became of every building, defects and repairs included"};

@@ -194,6 +194,9 @@ class Run {
     head.options_json = canonical;
     head.crs = selection->crs;
     head.origin = selection->origin;
+    head.source_crs = selection->source_crs;
+    if (const auto facts = describe_crs(selection->crs); facts)
+      head.vertical_crs = facts->vertical_name;
     if (auto opened = open(*selection); !opened) return opened.error();
     if (auto streamed = stream(*selection); !streamed) return streamed.error();
     if (auto finished = finish_files(); !finished) return finished.error();

@@ -59,7 +59,8 @@ Box3 with_axes_swapped(Box3 box) {
   return box;
 }
 
-std::vector<SrsUse> interpret_srs(const FileRecord& file, const Crs& assumed, CrsBook& book) {
+std::vector<SrsUse> interpret_srs(const FileRecord& file, const Crs& assumed, AxisOrder order,
+                                  CrsBook& book) {
   std::vector<SrsUse> uses(file.facts.srs_names.size());
   for (std::size_t i = 0; i < uses.size(); ++i) {
     SrsUse& use = uses[i];
@@ -82,7 +83,11 @@ std::vector<SrsUse> interpret_srs(const FileRecord& file, const Crs& assumed, Cr
 
     const bool geographic = facts && facts->geographic;
     use.extent = geographic ? file.srs[i].near_deg : file.srs[i].near_m;
-    if (!facts) continue;
+    if (order == AxisOrder::NorthEast) {
+      use.swap_axes = true;
+      use.extent = with_axes_swapped(use.extent);
+    }
+    if (!facts || order != AxisOrder::Auto) continue;
 
     use.swap_axes = geographic && facts->north_first;
     const Box3 seen = !use.extent.is_empty()         ? use.extent

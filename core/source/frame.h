@@ -7,6 +7,7 @@
 
 #include "core/citymodel/crs.h"
 #include "core/source/catalogue.h"
+#include "core/source/source.h"
 
 namespace citymesh::source {
 
@@ -32,8 +33,10 @@ struct SrsUse {
 
 /// Reads the CRS names of a file and decides their axis order: geographic CRSs in the order
 /// of the registry, projected ones east before north whatever the registry says; the other way
-/// round where only that is plausible against the area of use. `assumed` stands for no name.
-std::vector<SrsUse> interpret_srs(const FileRecord& file, const Crs& assumed, CrsBook& book);
+/// round where only that is plausible against the area of use. An `order` other than Auto is taken
+/// as it is. `assumed` stands for no name.
+std::vector<SrsUse> interpret_srs(const FileRecord& file, const Crs& assumed, AxisOrder order,
+                                  CrsBook& book);
 
 /// A box's ring, `kPointsPerSide` points on each side, counter-clockwise, not closed.
 inline constexpr int kPointsPerSide = 21;

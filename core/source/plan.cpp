@@ -65,7 +65,8 @@ class Planner {
         passed_over_.push_back(record->name + " is no city model, passed over");
         continue;
       }
-      auto srs = interpret_srs(*record, assumed_, book_);
+      auto srs = interpret_srs(*record, query_.source_crs.known() ? query_.source_crs : assumed_,
+                               query_.axis_order, book_);
       plan_.files.push_back({std::move(record), std::move(srs), {}});
     }
     return {};
@@ -109,6 +110,14 @@ class Planner {
     return overlap(box, file.srs[srs].extent) ? box : Box3{};
   }
 
+  // A CRS with the heights of all sources, nothing where they differ.
+  Crs common_heights(const std::map<std::string, Box3>& extents) {
+    std::map<std::string, Crs> heights;  // by name
+    for (const auto& [id, extent] : extents)
+      if (const auto& facts = book_.facts(Crs{id})) heights.emplace(facts->vertical_name, Crs{id});
+    return heights.size() == 1 ? heights.begin()->second : Crs{};
+  }
+
   Result<void> find_working_crs() {
     std::map<std::string, Box3> extents;  // by source CRS
     for (const Plan::File& file : plan_.files)
@@ -121,7 +130,7 @@ class Planner {
     for (const auto& [id, extent] : extents) {
       const Crs source{id};
       if (query_.crs.known()) {
-        workplaces_[id].crs = query_.crs;
+        workplaces_[id].crs = with_vertical(query_.crs, common_heights(extents));
         continue;
       }
       const Point3 centre{(extent.min.x + extent.max.x) / 2, (extent.min.y + extent.max.y) / 2, 0};
@@ -259,9 +268,11 @@ class Planner {
     return std::optional(FlatBox{{whole.min.x, whole.min.y}, {whole.max.x, whole.max.y}});
   }
 
-  bool z_fits(const Box3& extent) const {
+  bool z_fits(Box3 extent, double unit_m) const {
     if (!query_.bbox->z_range_m) return true;
     const auto [low, high] = *query_.bbox->z_range_m;
+    extent.min.z *= unit_m;
+    extent.max.z *= unit_m;
     const double middle = (extent.min.z + extent.max.z) / 2;
     switch (query_.bbox_rule) {
       case BboxRule::Intersects:
@@ -275,7 +286,10 @@ class Planner {
   }
 
   Result<bool> is_inside(const BuildingRecord& building, const SrsUse& use, const Crs& working) {
-    if (!z_fits(building.extent)) return false;
+    const Crs source = source_crs(use, query_);
+    const auto& facts = book_.facts(source);
+    if (!z_fits(building.extent, source.known() && facts ? facts->vertical_unit_m : 1.0))
+      return false;
     const auto area = area_in(working);
     if (!area) return area.error();
     const auto& transformer = book_.transformer(source_crs(use, query_), working);
@@ -393,11 +407,9 @@ class Planner {
         const auto& transformer = book_.transformer(source_crs(use, query_), working);
         if (!transformer) return transformer.error();
         auto ring = densified_ring(box.min.x, box.min.y, box.max.x, box.max.y);
+        for (Point3& point : ring) point.z = box.min.z;
         if (!transformer->apply(ring)) continue;
-        for (Point3& point : ring) {
-          point.z = box.min.z;
-          whole.add(point);
-        }
+        for (const Point3& point : ring) whole.add(point);
       }
     if (!whole.is_empty()) plan_.selection.origin = floored(whole.min);
     return {};
@@ -405,7 +417,7 @@ class Planner {
 
   void describe() {
     Selection& selection = plan_.selection;
-    std::set<std::string> unstated, assumed;
+    std::set<std::string> unstated, assumed, used;
     for (const Plan::File& file : plan_.files) {
       const FileRecord& record = *file.record;
       InputReport report{.file = record.name,
@@ -422,6 +434,7 @@ class Planner {
           continue;
         }
         if (!use.crs.id.empty()) crs_names.insert(use.crs.id);
+        if (!use.crs.id.empty()) used.insert(use.crs.id);
         if (!use.crs.known()) (query_.crs.known() ? assumed : unstated).insert(record.name);
       }
       report.crs = joined(crs_names);
@@ -440,6 +453,7 @@ class Planner {
                                     building.part_ids.end());
       }
     }
+    selection.source_crs.assign(used.begin(), used.end());
     selection.warnings.insert(selection.warnings.end(), passed_over_.begin(), passed_over_.end());
     if (!unstated.empty())
       selection.warnings.push_back(joined(unstated) + ": no CRS stated, metres assumed");

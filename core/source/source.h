@@ -18,6 +18,9 @@ namespace citymesh {
 
 enum class BboxRule { Intersects, Centre, Within };
 
+/// How files store their coordinates. Auto: as interpret_srs() finds out.
+enum class AxisOrder { Auto, EastNorth, NorthEast };
+
 /// A box as a request states it: axis order of the named CRS already turned to x east, y north.
 struct RequestBox {
   double min_x = 0, min_y = 0, max_x = 0, max_y = 0;
@@ -31,11 +34,14 @@ struct BuildingQuery {
   BboxRule bbox_rule = BboxRule::Intersects;
   std::vector<std::string> object_ids{};  ///< with a box: both must hold
   Crs crs{};                              ///< working CRS wanted; empty: the source's
+  Crs source_crs{};                       ///< of files that state none
+  AxisOrder axis_order = AxisOrder::Auto;
 };
 
 /// The frame and the extent of a selection, found before the first building is read.
 struct Selection {
-  Crs crs{};  ///< working CRS: projected, metres
+  Crs crs{};                              ///< working CRS: projected, metres
+  std::vector<std::string> source_crs{};  ///< ids of the CRSs that the inputs use, each once
   /// Whole metres (floored), never from the features found. With a box: its centre, z 0. Else the
   /// lower corner of the extents that the files declare; a file that declares none, or one that its
   /// buildings contradict, counts with the extent of all its buildings, those further than 200 km
@@ -86,7 +92,8 @@ struct FileSourceOptions {
 /// CityGML 1.0, 2.0, 3.0 and CityJSON(Seq) 1.0, 1.1, 2.0 files (also .gz), found by content, not by
 /// name. Directories are searched one level deep, in the order of names; what is no city model in
 /// them is passed over with a warning. What a first pass finds is kept until the file changes.
-/// Files that state no CRS are taken to be in the query's `crs` when it names one. Thread-safe.
+/// Files that state no CRS are taken to be in the query's `source_crs`, else in its `crs`.
+/// Thread-safe.
 /// Errors: NotFound for a path that does not exist, PermissionDenied for one that
 /// cannot be read.
 Result<std::unique_ptr<CitySource>> open_files(std::vector<std::filesystem::path> paths,

@@ -127,6 +127,14 @@ void append_report_head(std::string& json, const RunReport& report) {
   members.text("version", report.version);
   members.key("options") += report.options_json.empty() ? "{}" : report.options_json;
   members.optional("crs", report.crs.id);
+  members.optional("vertical_crs", report.vertical_crs);
+  std::string& sources = members.key("source_crs");
+  sources += '[';
+  for (std::size_t i = 0; i < report.source_crs.size(); ++i) {
+    if (i > 0) sources += ", ";
+    append_json_string(sources, report.source_crs[i]);
+  }
+  sources += ']';
   append_point(members.key("origin"), report.origin);
   members.text("unit", "metre");
   members.text("axes", kAxes);

@@ -94,6 +94,8 @@ TEST(Inputs, WrongValuesAreNamedWithWhatIsExpected) {
   EXPECT_THAT(refused(R"({"lod":["high"]})").message, HasSubstr("high"));
   EXPECT_THAT(refused(R"({"crs":"EPSG:99999999"})").message, HasSubstr("`crs`"));
   EXPECT_THAT(refused(R"({"crs":"EPSG:4326"})").message, HasSubstr("geographic"));
+  EXPECT_THAT(refused(R"({"source_crs":"EPSG:99999999"})").message, HasSubstr("`source_crs`"));
+  EXPECT_THAT(refused(R"({"axis_order":"up"})").message, HasSubstr("north_east"));
 }
 
 TEST(Inputs, WrongBoxesAreNamed) {
