@@ -7,10 +7,23 @@
 
 namespace citymesh::source {
 
-enum class Format { CityGml, CityJson, CityJsonSeq };
+enum class Format {
+  CityGml,
+  CityJson,
+  CityJsonSeq,
+  JsonFg,
+  Tu3dJson,
+  Obj,
+  Off,
+  Ply,
+  Poly,
+  StlText,
+  StlBinary
+};
 
-/// What a file holds, found by its first bytes. Errors: as ByteReader; InvalidArgument for what is
-/// none of the formats.
+/// What a file holds, found by what stands in it; its name decides between texts of bare numbers
+/// only. Errors: as ByteReader; InvalidArgument for what
+/// is none of the formats.
 Result<Format> detect_format(const std::filesystem::path& path, const ReadLimits& limits);
 
 /// Reads a document of any format. See read_citygml for what becomes of defects.
