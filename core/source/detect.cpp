@@ -27,11 +27,9 @@ class Bytes {
       if (*count == 0) break;
       filled_ += *count;
     }
-    whole_ = filled_ < buffer_.size();
     return {};
   }
   std::string_view start() const { return {buffer_.data(), filled_}; }
-  bool start_is_whole() const { return whole_; }
   /// The piece behind the one before; empty at the end.
   Result<std::string_view> next() {
     const auto count = reader_.read(buffer_.data(), buffer_.size());
@@ -42,9 +40,8 @@ class Bytes {
 
  private:
   ByteReader reader_;
-  std::array<char, 1u << 14> buffer_{};
+  std::array<char, 4096> buffer_{};
   std::size_t filled_ = 0;
-  bool whole_ = false;
 };
 
 /// Tells the JSON formats apart while the text passes by: the outermost member `type`, and whether
@@ -157,7 +154,8 @@ bool starts_as_off(std::string_view text) {
   return text.starts_with("OFF") && (text.size() == 3 || is_blank(text[3]));
 }
 
-// Every line is one of OBJ's, and one of them at least is more than a comment.
+// Every line is one of OBJ's, and one of them at least is more than a comment. The last one may be
+// cut off.
 bool looks_like_obj(std::string_view text) {
   constexpr std::string_view kKeywords[] = {"v", "vt", "vn",     "f",      "o",      "g", "s",
                                             "l", "p",  "mtllib", "usemtl", "usemap", "vp"};

@@ -57,13 +57,14 @@ bool JsonFeatures::open(std::string_view lone_type) {
   }
   const dom::object* const type = head("type");
   std::string_view name;
-  if (!lone_type.empty() && type && (*type)["type"].get(name) == simdjson::SUCCESS &&
-      name == lone_type) {
-    features_.push_back(json_.all());
-    return true;
+  if (!type || (*type)["type"].get(name) != simdjson::SUCCESS) name = "";
+  if (name.empty() || name != lone_type) {
+    fail_reading(facts_, "a document of type '" + std::string(name.substr(0, 60)) +
+                             "' needs a member 'features'");
+    return false;
   }
-  fail_reading(facts_, "member 'features' is missing");
-  return false;
+  features_.push_back(json_.all());
+  return true;
 }
 
 const dom::object* JsonFeatures::head(std::string_view name) {
