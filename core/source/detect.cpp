@@ -206,7 +206,8 @@ Error unknown_format(std::string_view start) {
 
 }  // namespace
 
-Result<Format> detect_format(const std::filesystem::path& path, const ReadLimits& limits) {
+Result<Format> detect_format(const std::filesystem::path& path, const std::string& name,
+                             const ReadLimits& limits) {
   auto reader = ByteReader::open(path, limits.max_file_bytes);
   if (!reader) return reader.error();
   Bytes bytes(std::move(*reader));
@@ -226,7 +227,7 @@ Result<Format> detect_format(const std::filesystem::path& path, const ReadLimits
   if (is_text(start)) {
     if (looks_like_obj(text)) return Format::Obj;
     // Nothing but numbers or comments: the name has to tell.
-    const std::string extension = extension_of(path);
+    const std::string extension = extension_of(name);
     if (extension == ".obj") return Format::Obj;
     if (extension == ".off") return Format::Off;
     if (extension == ".poly") return Format::Poly;
@@ -234,7 +235,7 @@ Result<Format> detect_format(const std::filesystem::path& path, const ReadLimits
   } else {
     const auto fits = has_size_of_stl(bytes);
     if (!fits) return fits.error();
-    if (*fits || extension_of(path) == ".stl") return Format::StlBinary;
+    if (*fits || extension_of(name) == ".stl") return Format::StlBinary;
   }
   return unknown_format(start);
 }
