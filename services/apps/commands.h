@@ -23,10 +23,17 @@ struct RunArguments {
   InputArguments inputs{};
 };
 
+struct IndexArguments {
+  std::filesystem::path data{};
+  std::filesystem::path state{};  ///< empty: a hidden folder in `data`
+  unsigned threads = 0;           ///< 0: one per core
+};
+
 /// Says on stderr what went wrong and returns kCouldNotRun.
 int could_not_run(const Error& error);
 
 int run_command(const RunArguments& arguments);
+int index_command(const IndexArguments& arguments);
 int serve_command(const ServeOptions& options);
 int processes_command();
 

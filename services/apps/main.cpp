@@ -72,6 +72,23 @@ void add_validate(CLI::App& program, RunArguments& arguments, int& code) {
   });
 }
 
+void add_index(CLI::App& program, IndexArguments& arguments, int& code) {
+  auto& command = *program.add_subcommand(
+      "index", "builds or updates the catalogue of a folder: boxes and ids are then found at once");
+  command.add_option("folder", arguments.data, "folder of city models")
+      ->required()
+      ->type_name("DIR");
+  command
+      .add_option("--state", arguments.state,
+                  "folder for the catalogue and unpacked copies; default: DIR/.citymesh, which "
+                  "`run --input DIR` and `serve --data DIR` then use")
+      ->type_name("DIR");
+  command.add_option("--threads", arguments.threads, "threads to use; 0: one per core")
+      ->check(CLI::Range(0u, 256u));
+  command.footer("Exit codes: 0 done; 1 done, but files could not be read; 2 could not run.");
+  command.callback([&] { code = index_command(arguments); });
+}
+
 void add_endpoint(CLI::App& command, const std::string& name, Endpoint& endpoint,
                   const std::string& what) {
   command
@@ -129,9 +146,11 @@ int run_program(int argc, char** argv) {
 
   int code = kDone;
   RunArguments run_arguments, validate_arguments;
+  IndexArguments index_arguments;
   ServeOptions serve_options;
   add_run(program, run_arguments, code);
   add_validate(program, validate_arguments, code);
+  add_index(program, index_arguments, code);
   add_serve(program, serve_options, code);
   program.add_subcommand("processes", "prints the processes with their inputs and outputs")
       ->callback([&] { code = processes_command(); });
@@ -144,8 +163,8 @@ int run_program(int argc, char** argv) {
   }
   if (program.get_subcommands().empty())
     return could_not_run(fail(ErrorCode::InvalidArgument,
-                              "a subcommand is missing, expected one of run, validate, serve, "
-                              "processes; --help tells more"));
+                              "a subcommand is missing, expected one of run, validate, index, "
+                              "serve, processes; --help tells more"));
   return code;
 }
 

@@ -13,6 +13,7 @@
 #include "core/pipeline/pipeline.h"
 #include "core/source/source.h"
 #include "services/apps/commands.h"
+#include "services/apps/input.h"
 #include "services/apps/output_folder.h"
 #include "services/apps/progress_bar.h"
 #include "services/apps/signals.h"
@@ -83,7 +84,7 @@ int exit_code(const RunOutcome& outcome) {
 
 Result<RunOutcome> run_files(const RunArguments& arguments, const std::string& inputs,
                              const std::filesystem::path& folder, const StopOnSignal& stop) {
-  auto source = open_files(arguments.files, {});
+  auto source = open_input(arguments.files);
   if (!source) return source.error();
   ProgressBar bar(stderr);
   RunContext context;

@@ -10,6 +10,7 @@
 #include "core/source/source.h"
 #include "services/apps/commands.h"
 #include "services/apps/signals.h"
+#include "services/catalogue/catalogue.h"
 #include "services/jobs/job_manager.h"
 #include "services/rest/server.h"
 #include "services/rpc/server.h"
@@ -76,15 +77,41 @@ void announce(Log& log, const ServeOptions& options, const Endpoint& rest, const
              options.data.string(), url, to_string(rpc));
 }
 
+/// What jobs read: a folder through its catalogue, which is brought up to date now rather than in
+/// the first job; a single file as it is.
+Result<SourceFactory> open_data(const ServeOptions& options, Log& log, const StopOnSignal& stop) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(options.data, ignored)) {
+    SourceFactory file = [data = options.data] { return open_files({data}, {}); };
+    if (auto opened = file(); !opened) return opened.error();
+    return file;
+  }
+  CatalogueOptions catalogue{.data = options.data, .state = default_catalogue(options.data)};
+  if (!has_catalogue(catalogue.state)) catalogue.state = options.state / "catalogue";
+  RunContext context;
+  context.stop = stop.token();
+  context.threads =
+      options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  log.info("indexing", {{"data", options.data.string()}, {"catalogue", catalogue.state.string()}});
+  const auto report = update_catalogue(catalogue, context);
+  if (!report) return report.error();
+  for (const auto& [file, problem] : report->problems)
+    log.warning("file_not_read", {{"file", file}, {"message", problem}});
+  log.info("indexed", {{"files", report->files},
+                       {"buildings", report->buildings},
+                       {"new_or_changed", report->indexed},
+                       {"removed", report->removed}});
+  return SourceFactory([catalogue] { return open_catalogued(catalogue); });
+}
+
 Result<void> serve(const ServeOptions& options) {
   if (auto checked = check(options); !checked) return checked;
-  const SourceFactory source = [data = options.data] { return open_files({data}, {}); };
-  if (auto opened = source(); !opened) return opened.error();  // now rather than in the first job
-
   const StopOnSignal stop;
   Log log(std::cout, log_level(options.log_level));
   auto state = StateFolder::open(options.state);
   if (!state) return state.error();
+  const auto source = open_data(options, log, stop);
+  if (!source) return source.error();
   auto store = EmbeddedStore::open(state->jobs_file(), {.max_attempts = options.max_attempts});
   if (!store) return store.error();
   auto results = FolderResultStore::open(state->results_folder());
@@ -101,7 +128,7 @@ Result<void> serve(const ServeOptions& options) {
     if (const auto waiting = queue.waiting()) metrics.set_queue_length(*waiting);
   });
   JobManager jobs(**store, **store, **results, {.max_open_jobs = options.max_open_jobs});
-  WorkerPool workers(**store, **store, **results, source, log, metrics, worker_options(options));
+  WorkerPool workers(**store, **store, **results, *source, log, metrics, worker_options(options));
   RestServer rest(jobs, metrics, rest_options(options));
   RpcServer rpc(jobs, metrics, rpc_options(options));
 

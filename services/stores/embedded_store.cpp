@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "services/stores/sqlite.h"
+#include "services/sqlite/sqlite.h"
 
 namespace citymesh {
 namespace {
@@ -70,26 +70,7 @@ constexpr const char* kSchema = R"sql(
   " FROM job WHERE (?1 = '[]' OR process IN (SELECT value FROM json_each(?1)))" \
   " AND (?2 = '[]' OR state IN (SELECT value FROM json_each(?2)))"
 
-Error as_error(const Failure& failure) {
-  switch (failure.code & 0xff) {
-    case SQLITE_FULL:
-    case SQLITE_IOERR:
-    case SQLITE_CANTOPEN:
-    case SQLITE_BUSY:
-    case SQLITE_LOCKED:
-    case SQLITE_READONLY:
-      return fail(ErrorCode::Unavailable, "job database: " + failure.message);
-    case SQLITE_CORRUPT:
-    case SQLITE_NOTADB:
-      return fail(ErrorCode::DataLoss, "job database is damaged: " + failure.message);
-    case SQLITE_TOOBIG:
-    case SQLITE_NOMEM:
-      return fail(ErrorCode::ResourceExhausted, "job database: " + failure.message);
-    default:
-      return fail(ErrorCode::Internal,
-                  fmt::format("job database: {} (code {})", failure.message, failure.code));
-  }
-}
+constexpr std::string_view kDatabase = "job database";
 
 /// Runs `work`, which returns a Result or throws Failure.
 template <class Work>
@@ -97,7 +78,7 @@ auto guarded(const Work& work) -> decltype(work()) {
   try {
     return work();
   } catch (const Failure& failure) {
-    return as_error(failure);
+    return as_error(failure, kDatabase);
   } catch (const json::exception& error) {
     return fail(ErrorCode::DataLoss,
                 fmt::format("job database holds an unreadable job: {}", error.what()));
@@ -284,7 +265,7 @@ Result<std::unique_ptr<EmbeddedStore>> EmbeddedStore::open(const std::filesystem
     connections->reader.run("PRAGMA query_only = ON");
     return std::unique_ptr<EmbeddedStore>(new EmbeddedStore(std::move(connections), options));
   } catch (const Failure& failure) {
-    auto error = as_error(failure);
+    auto error = as_error(failure, kDatabase);
     error.message = fmt::format("cannot open '{}': {}", file.string(), error.message);
     return error;
   }

@@ -7,16 +7,21 @@
 #include <string>
 #include <string_view>
 
+#include "core/base/result.h"
+
 struct sqlite3;
 struct sqlite3_stmt;
 
 namespace citymesh::sqlite {
 
-/// Thrown inside services/stores only; as_error() turns it into what callers see.
+/// Thrown to the edge of the room that uses a database; as_error() turns it into what callers see.
 struct Failure {
   int code = 0;  ///< SQLite's extended result code
   std::string message{};
 };
+
+/// `database` names it in the message: "job database".
+Error as_error(const Failure& failure, std::string_view database);
 
 /// A prepared statement at work; ready for the next use when it goes.
 class Query {
@@ -29,11 +34,14 @@ class Query {
   Query& bind(int index, std::string_view text);
   Query& bind(int index, std::int64_t number);
   Query& bind(int index, std::optional<std::int64_t> number);
+  Query& bind(int index, double number);
 
   bool step();  ///< true: there is a row
   void run() { (void)step(); }
 
-  std::string text(int column) const;
+  std::string text(int column) const;            ///< or the bytes of a blob
+  std::string_view text_view(int column) const;  ///< the same, until the next step
+  double real(int column) const;
   std::int64_t number(int column) const;
   std::optional<std::int64_t> optional_number(int column) const;
 

@@ -1,5 +1,6 @@
-#include "services/stores/sqlite.h"
+#include "services/sqlite/sqlite.h"
 
+#include <fmt/format.h>
 #include <sqlite3.h>
 
 namespace citymesh::sqlite {
@@ -17,6 +18,29 @@ void check(sqlite3_stmt* statement, int code) {
 }
 
 }  // namespace
+
+Error as_error(const Failure& failure, std::string_view database) {
+  const auto error = [&](ErrorCode code, std::string_view kind) {
+    return fail(code, fmt::format("{}{}: {}", database, kind, failure.message));
+  };
+  switch (failure.code & 0xff) {
+    case SQLITE_FULL:
+    case SQLITE_IOERR:
+    case SQLITE_CANTOPEN:
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+    case SQLITE_READONLY:
+      return error(ErrorCode::Unavailable, "");
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+      return error(ErrorCode::DataLoss, " is damaged");
+    case SQLITE_TOOBIG:
+    case SQLITE_NOMEM:
+      return error(ErrorCode::ResourceExhausted, "");
+    default:
+      return error(ErrorCode::Internal, fmt::format(" (code {})", failure.code));
+  }
+}
 
 Query::~Query() {
   sqlite3_reset(statement_);
@@ -41,6 +65,11 @@ Query& Query::bind(int index, std::optional<std::int64_t> number) {
   return *this;
 }
 
+Query& Query::bind(int index, double number) {
+  check(statement_, sqlite3_bind_double(statement_, index, number));
+  return *this;
+}
+
 bool Query::step() {
   const auto code = sqlite3_step(statement_);
   if (code == SQLITE_ROW) return true;
@@ -48,11 +77,15 @@ bool Query::step() {
   raise(sqlite3_db_handle(statement_), code);
 }
 
-std::string Query::text(int column) const {
+std::string_view Query::text_view(int column) const {
   const auto* bytes = static_cast<const char*>(sqlite3_column_blob(statement_, column));
   const auto size = static_cast<std::size_t>(sqlite3_column_bytes(statement_, column));
-  return bytes == nullptr ? std::string{} : std::string(bytes, size);
+  return bytes == nullptr ? std::string_view{} : std::string_view(bytes, size);
 }
+
+std::string Query::text(int column) const { return std::string(text_view(column)); }
+
+double Query::real(int column) const { return sqlite3_column_double(statement_, column); }
 
 std::int64_t Query::number(int column) const { return sqlite3_column_int64(statement_, column); }
 

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "core/source/source.h"
+
+namespace citymesh {
+
+/// The city models at some paths: one folder that has been indexed through its catalogue, anything
+/// else as files. Errors: as open_files.
+Result<std::unique_ptr<CitySource>> open_input(const std::vector<std::filesystem::path>& paths);
+
+}  // namespace citymesh

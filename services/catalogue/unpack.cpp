@@ -1,0 +1,76 @@
+#include "services/catalogue/unpack.h"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+
+#include "core/source/byte_reader.h"
+
+namespace citymesh::catalogue {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace source;
+
+constexpr std::size_t kChunkBytes = 1u << 20;
+
+Error cannot(const char* what, const fs::path& path) {
+  return fail(ErrorCode::Unavailable, fmt::format("cannot {} '{}'", what, path.string()));
+}
+
+Result<void> unpack_gzip(const fs::path& packed, const fs::path& copy, const ReadLimits& limits) {
+  auto bytes = ByteReader::open(packed, limits.max_file_bytes);
+  if (!bytes) return bytes.error();
+  std::ofstream file(copy, std::ios::binary | std::ios::trunc);
+  std::vector<char> chunk(kChunkBytes);
+  for (;;) {
+    const auto count = bytes->read(chunk.data(), chunk.size());
+    if (!count) return count.error();
+    if (*count == 0) break;
+    if (!file.write(chunk.data(), static_cast<std::streamsize>(*count)))
+      return cannot("write", copy);
+  }
+  file.close();
+  return file ? Result<void>() : Result<void>(cannot("write", copy));
+}
+
+}  // namespace
+
+Result<std::string> content_hash(const fs::path& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rbe"),
+                                                             &std::fclose);
+  const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
+                                                                              &XXH3_freeState);
+  if (!file || !state) return cannot("read", path);
+  XXH3_128bits_reset(state.get());
+  std::vector<char> chunk(kChunkBytes);
+  for (;;) {
+    const std::size_t count = std::fread(chunk.data(), 1, chunk.size(), file.get());
+    if (count == 0) break;
+    XXH3_128bits_update(state.get(), chunk.data(), count);
+  }
+  if (std::ferror(file.get())) return cannot("read", path);
+  const XXH128_hash_t hash = XXH3_128bits_digest(state.get());
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+Result<std::vector<FileRecord>> unpack(const FileRecord& file, const fs::path& folder,
+                                       const ReadLimits& limits) {
+  const auto is_packed = is_gzip(file.path);
+  if (!is_packed || !*is_packed) return std::vector{file};
+
+  std::error_code error;
+  fs::remove_all(folder, error);
+  fs::create_directories(folder, error);
+  if (error) return cannot("make", folder);
+  FileRecord unpacked = file;
+  unpacked.text = folder / "text";
+  if (auto done = unpack_gzip(file.path, unpacked.text, limits); !done) return done.error();
+  return std::vector{unpacked};
+}
+
+}  // namespace citymesh::catalogue
