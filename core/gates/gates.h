@@ -41,16 +41,18 @@ struct ParsedBody {
   std::vector<Triangle> triangles{};
   std::vector<std::string> patches{};  ///< per triangle: the surface type in the file, "" for none
   bool float32 = false;                ///< the file holds coordinates as float32
+  Point3 centre{};                     ///< what float32 coordinates are counted from in the file
 };
 
 using ParsedBodySink = std::function<Result<void>(ParsedBody&&)>;
 
 /// Reads files that citymesh wrote, sharing no code with the writers, and strictly: what a writer
 /// would not write is an error. `format` is a key of the format table. For binary STL the sidecar
-/// stands beside the file, and behind the triangles in `text`. OBJ and STL files are read body by
-/// body. A solid of `patches: by_type` comes as one body without a name. Errors: DataLoss naming
-/// what is wrong and where (line or byte); NotFound or Unavailable for a file that cannot be read;
-/// those of the sink.
+/// stands beside the file, and behind the triangles in `text`. Polygons are cut into triangles as
+/// meshing does. Files are read body by body, but for JSON, which is in memory as a whole. A solid
+/// of `patches: by_type` comes as one body without a name. Errors: DataLoss naming what is wrong
+/// and where (line or byte); NotFound or Unavailable for a file that cannot be read; those of the
+/// sink.
 Result<void> parse_text(std::string_view format, std::string_view text, const ParsedBodySink& sink);
 Result<void> parse_file(std::string_view format, const std::filesystem::path& file,
                         const ParsedBodySink& sink);

@@ -13,7 +13,6 @@ namespace citymesh {
 namespace {
 
 constexpr std::size_t kPieceBytes = 1 << 20;
-constexpr std::size_t kMaxLineBytes = 1 << 20;
 
 struct Parser {
   std::string_view format;
@@ -25,7 +24,11 @@ constexpr std::array kParsers{
     Parser{"obj", parse_obj_text, parse_obj_file},
     Parser{"stl", parse_stl_text, parse_stl_file},
     Parser{"stl_binary", parse_binary_stl_text, parse_binary_stl_file},
+    Parser{"ply", parse_ply_text, parse_ply_file},
+    Parser{"vtu", parse_vtu_text, parse_vtu_file},
+    Parser{"glb", parse_glb_text, parse_glb_file},
     Parser{"cityjson", parse_cityjson_text, parse_cityjson_file},
+    Parser{"cityjsonseq", parse_cityjsonseq_text, parse_cityjsonseq_file},
 };
 
 Result<const Parser*> find_parser(std::string_view format) {
@@ -68,7 +71,8 @@ Result<void> for_each_line(std::string_view text, const LineSink& sink) {
   return {};
 }
 
-Result<void> for_each_line(const std::filesystem::path& file, const LineSink& sink) {
+Result<void> for_each_line(const std::filesystem::path& file, const LineSink& sink,
+                           std::size_t longest_line) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
                                                                &std::fclose);
   if (!stream) return file_error(file, errno);
@@ -90,7 +94,8 @@ Result<void> for_each_line(const std::filesystem::path& file, const LineSink& si
         return taken;
       rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
     }
-    if (rest.size() > kMaxLineBytes) return line_error(number + 1, "longer than 1 MiB");
+    if (rest.size() > longest_line)
+      return line_error(number + 1, "longer than " + std::to_string(longest_line) + " bytes");
     piece.erase(0, piece.size() - rest.size());
   }
   return {};

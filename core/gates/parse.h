@@ -19,14 +19,25 @@ Result<void> parse_binary_stl_text(std::string_view text, const ParsedBodySink& 
 Result<void> parse_binary_stl_file(const std::filesystem::path& file, const ParsedBodySink& sink);
 Result<void> parse_cityjson_text(std::string_view text, const ParsedBodySink& sink);
 Result<void> parse_cityjson_file(const std::filesystem::path& file, const ParsedBodySink& sink);
+Result<void> parse_cityjsonseq_text(std::string_view text, const ParsedBodySink& sink);
+Result<void> parse_cityjsonseq_file(const std::filesystem::path& file, const ParsedBodySink& sink);
+Result<void> parse_ply_text(std::string_view text, const ParsedBodySink& sink);
+Result<void> parse_ply_file(const std::filesystem::path& file, const ParsedBodySink& sink);
+Result<void> parse_vtu_text(std::string_view text, const ParsedBodySink& sink);
+Result<void> parse_vtu_file(const std::filesystem::path& file, const ParsedBodySink& sink);
+Result<void> parse_glb_text(std::string_view text, const ParsedBodySink& sink);
+Result<void> parse_glb_file(const std::filesystem::path& file, const ParsedBodySink& sink);
 
 /// Takes a line without its end, and its number from 1.
 using LineSink = std::function<Result<void>(std::string_view, std::uint64_t)>;
 
 Result<void> for_each_line(std::string_view text, const LineSink& sink);
+inline constexpr std::size_t kLongestLine = 1 << 20;  ///< of formats with short lines, in bytes
+
 /// Reads in pieces. Errors: those of the sink; NotFound, Unavailable; DataLoss for a line longer
 /// than anything a writer writes.
-Result<void> for_each_line(const std::filesystem::path& file, const LineSink& sink);
+Result<void> for_each_line(const std::filesystem::path& file, const LineSink& sink,
+                           std::size_t longest_line = kLongestLine);
 
 /// Cuts the next word off `rest`; empty at the end of the line.
 std::string_view next_word(std::string_view& rest);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cerrno>
+#include <utility>
 
 #include "core/gates/parse.h"
 #include "core/gates/polygons.h"
@@ -24,8 +25,7 @@ struct Frame {
   std::vector<std::array<std::int64_t, 3>> vertices{};
 };
 
-Frame read_frame(json::document& document) {
-  Frame frame;
+void read_scale(json::document& document, Frame& frame) {
   json::object transform = document["transform"].get_object();
   std::size_t axis = 0;
   for (double value : transform["scale"].get_array()) {
@@ -33,9 +33,13 @@ Frame read_frame(json::document& document) {
     frame.scale[axis++] = value;
   }
   if (axis != 3) throw Refused{"transform.scale: expected three numbers above 0"};
+}
+
+void read_vertices(json::document& document, Frame& frame) {
+  frame.vertices.clear();
   for (json::array vertex : document["vertices"].get_array()) {
     std::array<std::int64_t, 3> xyz{};
-    axis = 0;
+    std::size_t axis = 0;
     for (std::int64_t value : vertex) {
       if (axis == 3)
         throw Refused{"vertex " + std::to_string(frame.vertices.size()) +
@@ -46,7 +50,6 @@ Frame read_frame(json::document& document) {
       throw Refused{"vertex " + std::to_string(frame.vertices.size()) + ": expected three numbers"};
     frame.vertices.push_back(xyz);
   }
-  return frame;
 }
 
 /// Throws what a result of ours holds against the text.
@@ -156,24 +159,78 @@ std::string where(json::document& document, const simdjson::padded_string& text)
   return "byte " + std::to_string(at - text.data());
 }
 
-Result<void> parse(const simdjson::padded_string& text, const ParsedBodySink& sink) {
-  json::parser parser;
+/// Reads one document, the whole file or a line of it.
+template <class Read>
+Result<void> with_document(json::parser& parser, const simdjson::padded_string& text, Read&& read) {
   json::document document;
   if (const auto error = parser.iterate(text).get(document); error != simdjson::SUCCESS)
     return fail(ErrorCode::DataLoss, simdjson::error_message(error));
   try {
-    if (std::string_view(document["type"].get_string()) != "CityJSON" ||
-        std::string_view(document["version"].get_string()) != "2.0")
-      return fail(ErrorCode::DataLoss, "expected a CityJSON document of version 2.0");
-    const Frame frame = read_frame(document);
-    document.rewind();
-    return read_objects(document, frame, sink);
+    return read(document);
   } catch (const Refused& refused) {
     return fail(ErrorCode::DataLoss, refused.what);
   } catch (const simdjson::simdjson_error& error) {
     return fail(ErrorCode::DataLoss, where(document, text) + ": " + error.what());
   }
 }
+
+Result<void> check_head(json::document& document) {
+  if (std::string_view(document["type"].get_string()) != "CityJSON" ||
+      std::string_view(document["version"].get_string()) != "2.0")
+    return fail(ErrorCode::DataLoss, "expected a CityJSON document of version 2.0");
+  return {};
+}
+
+Result<void> parse(const simdjson::padded_string& text, const ParsedBodySink& sink) {
+  json::parser parser;
+  return with_document(parser, text, [&](json::document& document) -> Result<void> {
+    if (auto head = check_head(document); !head) return head;
+    Frame frame;
+    read_scale(document, frame);
+    read_vertices(document, frame);
+    document.rewind();
+    return read_objects(document, frame, sink);
+  });
+}
+
+/// Takes the lines of a sequence: the first has the transform, the others a feature each.
+class Sequence {
+ public:
+  explicit Sequence(const ParsedBodySink& sink) : sink_(sink) {}
+
+  Result<void> line(std::string_view line, std::uint64_t number) {
+    const simdjson::padded_string text(line);
+    auto read = with_document(parser_, text, [&](json::document& document) -> Result<void> {
+      if (!std::exchange(any_, true)) {
+        if (auto head = check_head(document); !head) return head;
+        read_scale(document, frame_);
+        return {};
+      }
+      if (std::string_view(document["type"].get_string()) != "CityJSONFeature")
+        throw Refused{"expected a CityJSONFeature"};
+      const std::string id(std::string_view(document["id"].get_string()));
+      read_vertices(document, frame_);
+      document.rewind();
+      if (document["CityObjects"][id].error() != simdjson::SUCCESS)
+        throw Refused{"no object has the id of the feature, " + in_quotes(id)};
+      document.rewind();
+      return read_objects(document, frame_, sink_);
+    });
+    if (read || read.error().code != ErrorCode::DataLoss) return read;
+    return line_error(number, read.error().message);
+  }
+
+  Result<void> end() const {
+    if (any_) return {};
+    return fail(ErrorCode::DataLoss, "expected a CityJSON document in the first line");
+  }
+
+ private:
+  const ParsedBodySink& sink_;
+  json::parser parser_{};
+  Frame frame_{};
+  bool any_ = false;
+};
 
 }  // namespace
 
@@ -189,6 +246,24 @@ Result<void> parse_cityjson_file(const std::filesystem::path& file, const Parsed
   if (simdjson::padded_string::load(file.string()).get(text) != simdjson::SUCCESS)
     return file_error(file, EIO);
   return parse(text, sink);
+}
+
+Result<void> parse_cityjsonseq_text(std::string_view text, const ParsedBodySink& sink) {
+  Sequence sequence(sink);
+  auto read = for_each_line(text, [&](std::string_view line, std::uint64_t number) {
+    return sequence.line(line, number);
+  });
+  return read ? sequence.end() : read;
+}
+
+Result<void> parse_cityjsonseq_file(const std::filesystem::path& file, const ParsedBodySink& sink) {
+  constexpr std::size_t kLongestBuilding = std::size_t{1} << 30;
+  Sequence sequence(sink);
+  auto read = for_each_line(
+      file,
+      [&](std::string_view line, std::uint64_t number) { return sequence.line(line, number); },
+      kLongestBuilding);
+  return read ? sequence.end() : read;
 }
 
 }  // namespace citymesh

@@ -19,12 +19,12 @@ double float32_tolerance_steps(double value) {
   return std::ldexp(1.0, std::ilogb(value) - 24) * kGridStepsPerMetre + kTextTolerance_steps;
 }
 
-bool to_grid(double value, bool float32, std::int64_t& steps) {
+bool to_grid(double value, bool float32, double centre, std::int64_t& steps) {
   const double scaled = value * kGridStepsPerMetre;
   if (!(std::abs(scaled) <= static_cast<double>(kGridLimit))) return false;
-  if (float32 && std::abs(value) > kFloat32Limit_m) return false;
+  if (float32 && !(std::abs(value - centre) <= kFloat32Limit_m)) return false;
   steps = std::llround(scaled);
-  const double tolerance = float32 ? float32_tolerance_steps(value) : kTextTolerance_steps;
+  const double tolerance = float32 ? float32_tolerance_steps(value - centre) : kTextTolerance_steps;
   return std::abs(scaled - static_cast<double>(steps)) <= tolerance;
 }
 
@@ -65,8 +65,9 @@ Result<WeldedBody> weld(const ParsedBody& body) {
   for (std::size_t i = 0; i < body.points.size(); ++i) {
     const Point3& p = body.points[i];
     GridPoint grid;
-    if (!to_grid(p.x, body.float32, grid.x) || !to_grid(p.y, body.float32, grid.y) ||
-        !to_grid(p.z, body.float32, grid.z))
+    if (!to_grid(p.x, body.float32, body.centre.x, grid.x) ||
+        !to_grid(p.y, body.float32, body.centre.y, grid.y) ||
+        !to_grid(p.z, body.float32, body.centre.z, grid.z))
       return fail(ErrorCode::DataLoss, "body \"" + body.name + "\": point " + std::to_string(i) +
                                            " (" + std::to_string(p.x) + ", " + std::to_string(p.y) +
                                            ", " + std::to_string(p.z) +

@@ -51,6 +51,7 @@ Result<WeldedBody> read_back(std::string_view format, std::string_view text) {
   ParsedBody all;
   auto parsed = parse_text(format, text, [&](ParsedBody&& body) -> Result<void> {
     all.float32 = body.float32;
+    all.centre = body.centre;  // where a file has several, it has one of them per body
     const auto first = static_cast<std::uint32_t>(all.points.size());
     all.points.insert(all.points.end(), body.points.begin(), body.points.end());
     for (const Triangle& t : body.triangles)

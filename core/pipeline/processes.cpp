@@ -1,6 +1,8 @@
 #include <array>
+#include <vector>
 
 #include "core/pipeline/pipeline.h"
+#include "core/write/write.h"
 
 namespace citymesh {
 namespace {
@@ -10,7 +12,6 @@ constexpr std::array<std::string_view, 3> kAxisOrders{"auto", "east_north", "nor
 constexpr std::array<std::string_view, 2> kInstallations{"drop", "keep"};
 constexpr std::array<std::string_view, 2> kOnFailure{"block", "drop"};
 constexpr std::array<std::string_view, 2> kPatches{"by_object", "by_type"};
-constexpr std::array<std::string_view, 4> kFormats{"obj", "stl", "stl_binary", "cityjson"};
 
 constexpr OptionSpec kBbox{
     "bbox", OptionKind::BoundingBox, "null",
@@ -43,8 +44,6 @@ constexpr OptionSpec kInstallation{
     "installations", OptionKind::Text, "\"drop\"",
     "Building installations: left out and counted, or kept as bodies of their own.",
     kInstallations};
-constexpr OptionSpec kFormat{"formats", OptionKind::TextList, "[\"obj\"]", "Formats to write.",
-                             kFormats};
 constexpr OptionSpec kFailure{
     "on_failure", OptionKind::Text, "\"block\"",
     "What becomes of a building that cannot be healed: its LoD1 block, or dropped with the "
@@ -79,31 +78,42 @@ constexpr OptionSpec kDisplacement{
     0.0001,
     10.0};
 
-constexpr std::array kExportInputs{kBbox,      kBboxRule, kObjectIds,    kCrs,       kSourceCrs,
-                                   kAxisOrder, kLod,      kInstallation, kFormat,    kFailure,
-                                   kUnite,     kPatch,    kSnap,         kPlanarity, kDisplacement};
 constexpr std::array kValidateInputs{kBbox,      kBboxRule, kObjectIds, kCrs,      kSourceCrs,
                                      kAxisOrder, kLod,      kSnap,      kPlanarity};
 
 constexpr OutputSpec kReportOutput{"report", "application/json",
                                    "What became of every building, defects and repairs included"};
-constexpr std::array kExportOutputs{
-    kReportOutput,
-    OutputSpec{"obj", "model/obj", "Wavefront OBJ, an object per body, a group per surface type"},
-    OutputSpec{"stl", "model/stl", "ASCII STL, a solid per body and surface type"},
-    OutputSpec{"stl_binary", "model/stl", "Binary STL with a list of triangle ranges beside it"},
-    OutputSpec{"cityjson", "application/city+json",
-               "CityJSON 2.0 with ids, attributes and semantics"}};
 constexpr std::array kValidateOutputs{kReportOutput};
 
-const std::array kProcesses{
-    ProcessSpec{"export-for-simulation", "Export for simulation",
-                "Selects buildings by box or id, heals them, and delivers closed, 2-manifold "
-                "meshes free of "
-                "self-intersections, with a report of what became of every building.",
-                true, kExportInputs, kExportOutputs},
-    ProcessSpec{"validate", "Validate", "Finds the defects of buildings and changes nothing.",
-                false, kValidateInputs, kValidateOutputs}};
+/// What depends on the formats that are built: core/write has the one table of them.
+struct Table {
+  Table() {
+    for (const Format& format : formats()) {
+      keys.push_back(format.key);
+      export_outputs.push_back({format.key, format.media_type, format.title});
+    }
+    const OptionSpec format{"formats", OptionKind::TextList, "[\"obj\"]", "Formats to write.",
+                            keys};
+    export_inputs = {kBbox,      kBboxRule, kObjectIds,    kCrs,       kSourceCrs,
+                     kAxisOrder, kLod,      kInstallation, format,     kFailure,
+                     kUnite,     kPatch,    kSnap,         kPlanarity, kDisplacement};
+    processes = {
+        ProcessSpec{"export-for-simulation", "Export for simulation",
+                    "Selects buildings by box or id, heals them, and delivers closed, 2-manifold "
+                    "meshes free of self-intersections, with a report of what became of every "
+                    "building.",
+                    true, export_inputs, export_outputs},
+        ProcessSpec{"validate", "Validate", "Finds the defects of buildings and changes nothing.",
+                    false, kValidateInputs, kValidateOutputs}};
+  }
+  Table(const Table&) = delete;  // it points into itself
+  Table& operator=(const Table&) = delete;
+
+  std::vector<std::string_view> keys{};
+  std::vector<OptionSpec> export_inputs{};
+  std::vector<OutputSpec> export_outputs{kReportOutput};
+  std::vector<ProcessSpec> processes{};
+};
 
 }  // namespace
 
@@ -125,17 +135,20 @@ std::string_view to_string(OptionKind kind) {
   return "";
 }
 
-std::span<const ProcessSpec> processes() { return kProcesses; }
+std::span<const ProcessSpec> processes() {
+  static const Table table;
+  return table.processes;
+}
 
 const ProcessSpec* find_process(std::string_view id) {
-  for (const ProcessSpec& process : kProcesses)
+  for (const ProcessSpec& process : processes())
     if (process.id == id) return &process;
   return nullptr;
 }
 
 std::string process_ids() {
   std::string text;
-  for (const ProcessSpec& process : kProcesses) {
+  for (const ProcessSpec& process : processes()) {
     if (!text.empty()) text += ", ";
     text += process.id;
   }

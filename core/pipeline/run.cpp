@@ -119,11 +119,11 @@ class Manifest {
 
   /// Re-reads a finished file once. A body is fit when the file holds exactly the triangles that
   /// passed the gates.
-  Result<void> check(std::string_view format, const std::filesystem::path& file, bool by_type,
+  Result<void> check(const Format& format, const std::filesystem::path& file, bool by_type,
                      const RunContext& context) const {
-    const bool named = !by_type && format != "cityjson";  // CityJSON knows bodies by gml_id
+    const bool named = !by_type && !format.gml_ids;
     std::uint64_t sum = 0, count = 0;
-    auto read = parse_file(format, file, [&](ParsedBody&& parsed) -> Result<void> {
+    auto read = parse_file(format.key, file, [&](ParsedBody&& parsed) -> Result<void> {
       if (context.stopped()) return cancelled();
       if (const auto labels = check_labels(parsed, named); !labels.empty())
         return fail(ErrorCode::DataLoss,
@@ -311,7 +311,7 @@ class Run {
       const bool by_type =
           open.format->key.starts_with("stl") && inputs_.patches == Patches::ByType;
       auto checked =
-          manifest_.check(open.format->key, folder_ / open.format->file_name, by_type, context_);
+          manifest_.check(*open.format, folder_ / open.format->file_name, by_type, context_);
       if (!checked) return checked.error();
     }
     time("gates", start);

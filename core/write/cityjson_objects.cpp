@@ -1,11 +1,9 @@
 #include "core/write/cityjson_objects.h"
 
-#include <algorithm>
-#include <array>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 
+#include "core/write/json_values.h"
 #include "core/write/solids.h"
 #include "core/write/text.h"
 #include "core/write/writers.h"
@@ -23,52 +21,6 @@ std::string crs_uri(const Crs& crs) {
   const std::string code = crs.id.substr(colon + 1, crs.id.find('+', colon) - colon - 1);
   const std::string version = authority == "OGC" ? "1.3" : "0";
   return "https://www.opengis.net/def/crs/" + authority + '/' + version + '/' + code;
-}
-
-void append_attributes(std::string& json, const Attributes& attributes) {
-  std::unordered_set<std::string_view> written;  // a repeated name keeps the first value
-  bool leading = true;
-  for (const auto& [name, value] : attributes) {
-    if (!written.insert(name).second) continue;
-    if (!leading) json += ',';
-    leading = false;
-    append_json_string(json, name);
-    json += ':';
-    if (const auto* flag = std::get_if<bool>(&value)) {
-      json += *flag ? "true" : "false";
-    } else if (const auto* integer = std::get_if<std::int64_t>(&value)) {
-      append_integer(json, *integer);
-    } else if (const auto* number = std::get_if<double>(&value)) {
-      append_exact(json, *number);
-    } else {
-      append_json_string(json, std::get<std::string>(value));
-    }
-  }
-}
-
-/// Addresses by the names of CityJSON's examples, which are those of xAL.
-void append_addresses(std::string& json, const std::vector<Address>& addresses) {
-  for (std::size_t i = 0; i < addresses.size(); ++i) {
-    const Address& address = addresses[i];
-    json += i == 0 ? "{" : ",{";
-    bool leading = true;
-    const std::array<std::pair<std::string_view, const std::string*>, 7> members{
-        {{"Country", &address.country},
-         {"AdministrativeArea", &address.state},
-         {"Locality", &address.city},
-         {"Postcode", &address.zip_code},
-         {"ThoroughfareName", &address.street},
-         {"ThoroughfareNumber", &address.house_number},
-         {"PostBox", &address.po_box}}};
-    for (const auto& [name, value] : members) {
-      if (value->empty()) continue;
-      if (!std::exchange(leading, false)) json += ',';
-      append_json_string(json, name);
-      json += ':';
-      append_json_string(json, *value);
-    }
-    json += '}';
-  }
 }
 
 /// Semantic surfaces of a mesh: one for each (type, source surface), in order of first appearance.
@@ -118,14 +70,6 @@ void append_nested(std::string& json, const std::vector<SolidFaces>& solids,
 
 }  // namespace
 
-/// The building itself, a part or an installation, with the bodies that are its geometry.
-struct CityJsonObjects::Object {
-  std::string id{};
-  const Attributes* attributes = nullptr;
-  const std::vector<Address>* addresses = nullptr;
-  std::vector<const Body*> bodies{};
-};
-
 void CityJsonObjects::clear_text() {
   objects_.clear();
   vertices_.clear();
@@ -163,7 +107,7 @@ void CityJsonObjects::append_geometry(const Body& body) {
   const TriangleMesh& mesh = body.mesh;
   const std::vector<SolidFaces> solids = solids_of(mesh);
   objects_ += solids.size() > 1 ? R"({"type":"MultiSolid","lod":)" : R"({"type":"Solid","lod":)";
-  append_json_string(objects_, body.lod.empty() ? "2" : body.lod);
+  append_json_string(objects_, solid_lod(body));
   objects_ += ",\"boundaries\":";
   append_nested(objects_, solids, [&](const FaceRange& faces) {
     for (std::size_t f = faces.begin; f < faces.end; ++f) {
@@ -209,13 +153,13 @@ void CityJsonObjects::append_geometry(const Body& body) {
   objects_ += '}';
 }
 
-void CityJsonObjects::append_object(const Object& object, std::string_view type,
+void CityJsonObjects::append_object(const CityObject& object, const std::string& id,
                                     std::string_view relations) {
   if (std::exchange(any_object_, true)) objects_ += ',';
   objects_ += line_break_;
-  append_json_string(objects_, object.id);
+  append_json_string(objects_, id);
   objects_ += ":{\"type\":";
-  append_json_string(objects_, type);
+  append_json_string(objects_, to_string(object.kind));
   if (!object.attributes->empty()) {
     objects_ += ",\"attributes\":{";
     append_attributes(objects_, *object.attributes);
@@ -227,55 +171,34 @@ void CityJsonObjects::append_object(const Object& object, std::string_view type,
     objects_ += ']';
   }
   objects_ += relations;
-  if (!object.bodies.empty()) {
+  if (object.body) {
     objects_ += ",\"geometry\":[";
-    for (std::size_t i = 0; i < object.bodies.size(); ++i) {
-      if (i > 0) objects_ += ',';
-      append_geometry(*object.bodies[i]);
-      append_vertices(*object.bodies[i]);
-    }
+    append_geometry(*object.body);
+    append_vertices(*object.body);
     objects_ += ']';
   }
   objects_ += '}';
 }
 
 std::string CityJsonObjects::append(const BuildingBodies& building) {
-  Object whole{.attributes = &building.attributes, .addresses = &building.addresses};
-  std::vector<Object> children;
-  for (const Body& body : building.bodies) {
-    if (body.kind == ObjectKind::Building) {
-      whole.bodies.push_back(&body);
-      continue;
-    }
-    const auto same = std::find_if(children.begin(), children.end(), [&body](const Object& child) {
-      return child.bodies[0]->gml_id == body.gml_id && child.bodies[0]->kind == body.kind;
-    });
-    if (same != children.end()) {
-      same->bodies.push_back(&body);
-    } else {
-      children.push_back(
-          {.attributes = &body.attributes, .addresses = &body.addresses, .bodies = {&body}});
-    }
-  }
-  whole.id = unused_id(building.gml_id,
-                       building.bodies.empty() ? "building" : building.bodies.front().name);
-  for (Object& child : children)
-    child.id = unused_id(child.bodies[0]->gml_id, child.bodies[0]->name);
+  const std::vector<CityObject> objects = city_objects(building);
+  std::vector<std::string> ids;
+  for (const CityObject& object : objects)
+    ids.push_back(unused_id(object.gml_id, object.body ? object.body->name : "building"));
 
-  std::string relations;
-  for (const Object& child : children) {
-    relations += relations.empty() ? ",\"children\":[" : ",";
-    append_json_string(relations, child.id);
+  std::string children;
+  for (std::size_t i = 1; i < objects.size(); ++i) {
+    children += children.empty() ? ",\"children\":[" : ",";
+    append_json_string(children, ids[i]);
   }
-  if (!children.empty()) relations += ']';
-  append_object(whole, "Building", relations);
+  if (!children.empty()) children += ']';
+  append_object(objects[0], ids[0], children);
 
-  std::string parent = ",\"parents\":[";
-  append_json_string(parent, whole.id);
-  parent += ']';
-  for (const Object& child : children)
-    append_object(child, to_string(child.bodies[0]->kind), parent);
-  return whole.id;
+  std::string parents = ",\"parents\":[";
+  append_json_string(parents, ids[0]);
+  parents += ']';
+  for (std::size_t i = 1; i < objects.size(); ++i) append_object(objects[i], ids[i], parents);
+  return ids[0];
 }
 
 std::string cityjson_head(const Scene& scene) {

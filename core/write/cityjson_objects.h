@@ -6,6 +6,7 @@
 #include <unordered_set>
 
 #include "core/citymodel/mesh.h"
+#include "core/write/city_objects.h"
 #include "core/write/extent.h"
 #include "core/write/write.h"
 
@@ -29,9 +30,7 @@ class CityJsonObjects {
   void restart_vertices();  ///< what follows starts objects and vertices of its own
 
  private:
-  struct Object;
-
-  void append_object(const Object& object, std::string_view type, std::string_view relations);
+  void append_object(const CityObject& object, const std::string& id, std::string_view relations);
   void append_geometry(const Body& body);
   void append_vertices(const Body& body);
   std::string unused_id(const std::string& gml_id, const std::string& fallback);

@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <optional>
 
+#include "core/write/bytes.h"
 #include "core/write/output.h"
 #include "core/write/text.h"
 #include "core/write/writers.h"
@@ -21,17 +21,10 @@ constexpr std::size_t kTriangleBytes = 50;
 constexpr std::int64_t kFloat32Limit_m = 1024;
 constexpr auto kFloat32Limit = kFloat32Limit_m * static_cast<std::int64_t>(kGridStepsPerMetre);
 
-static_assert(std::endian::native == std::endian::little);
-
-void append_u32(std::string& bytes, std::uint32_t value) {
-  for (int shift = 0; shift < 32; shift += 8)
-    bytes += static_cast<char>(static_cast<unsigned char>(value >> shift));
-}
-
 void append_point(std::string& bytes, const Point3& p) {
-  append_u32(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(p.x)));
-  append_u32(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(p.y)));
-  append_u32(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(p.z)));
+  append_bytes(bytes, static_cast<float>(p.x));
+  append_bytes(bytes, static_cast<float>(p.y));
+  append_bytes(bytes, static_cast<float>(p.z));
 }
 
 void append_triangles(std::string& bytes, const TriangleMesh& mesh, const TrianglesByType& grouped,
@@ -199,7 +192,7 @@ class BinaryStlWriter final : public BodyWriter {
       }
     }
     std::string bytes = stl_header(scene_);
-    append_u32(bytes, static_cast<std::uint32_t>(whole.first));
+    append_bytes(bytes, static_cast<std::uint32_t>(whole.first));
     return bytes + whole.triangles + sidecar_head(scene_, format_.file_name) + whole.ranges +
            sidecar_tail(whole.first);
   }
@@ -230,7 +223,7 @@ class BinaryStlWriter final : public BodyWriter {
                       " triangles; the format counts up to 4294967295: use format stl (ASCII)");
     if (auto r = sidecar_.write(sidecar_tail(total)); !r) return r;
     std::string count;
-    append_u32(count, static_cast<std::uint32_t>(total));
+    append_bytes(count, static_cast<std::uint32_t>(total));
     if (auto r = file_.overwrite(kHeaderBytes, count); !r) return r;
     if (auto r = sidecar_.commit(); !r) return r;
     return file_.commit();
@@ -290,7 +283,7 @@ WriterResult open_stl_binary(const std::filesystem::path& folder, const Format& 
   auto sidecar = AtomicFile::create(folder / format.sidecar);
   if (!sidecar) return sidecar.error();
   std::string head = stl_header(scene);
-  append_u32(head, 0);  // replaced when the file is complete
+  append_bytes(head, std::uint32_t{0});  // replaced when the file is complete
   if (auto written = file->write(head); !written) return written.error();
   if (auto written = sidecar->write(sidecar_head(scene, format.file_name)); !written)
     return written.error();

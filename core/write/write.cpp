@@ -12,12 +12,24 @@ namespace citymesh {
 namespace {
 
 constexpr std::array kFormats{
-    Format{"obj", "model.obj", "model/obj", "", false},
-    Format{"stl", "model.stl", "model/stl", "", false},
-    Format{"stl_binary", "model_binary.stl", "model/stl", "model_binary.patches.json", true},
-    Format{"cityjson", "model.city.json", "application/city+json", "", false},
+    Format{"obj", "model.obj", "model/obj", "",
+           "Wavefront OBJ, an object per body, a group per surface type"},
+    Format{"stl", "model.stl", "model/stl", "", "ASCII STL, a solid per body and surface type"},
+    Format{"stl_binary", "model_binary.stl", "model/stl", "model_binary.patches.json",
+           "Binary STL with a list of triangle ranges beside it"},
+    Format{"ply", "model.ply", "application/ply", "",
+           "Binary PLY, double coordinates, body and surface type of every triangle"},
+    Format{"vtu", "model.vtu", "application/vnd.vtk.vtu+xml", "",
+           "VTK unstructured grid, body and surface type of every triangle"},
+    Format{"glb", "model.glb", "model/gltf-binary", "",
+           "glTF 2.0 binary, a node per body, a material per surface type"},
+    Format{"cityjson", "model.city.json", "application/city+json", "",
+           "CityJSON 2.0 with ids, attributes, addresses and semantics", true},
+    Format{"cityjsonseq", "model.city.jsonl", "application/city+json-seq", "",
+           "CityJSONSeq 2.0, a building per line", true},
 };
-constexpr std::array kOpen{open_obj, open_stl, open_stl_binary, open_cityjson};
+constexpr std::array kOpen{open_obj, open_stl, open_stl_binary, open_ply,
+                           open_vtu, open_glb, open_cityjson,   open_cityjsonseq};
 static_assert(kFormats.size() == kOpen.size());
 
 }  // namespace

@@ -20,7 +20,8 @@ struct Format {
   std::string_view file_name;  ///< `model.obj`
   std::string_view media_type;
   std::string_view sidecar;  ///< `model_binary.patches.json` or ""
-  bool float32 = false;      ///< coordinates only within 1024 m of the origin
+  std::string_view title;    ///< what it is, for people
+  bool gml_ids = false;      ///< bodies go by their gml_id, not by Body::name
 };
 
 std::span<const Format> formats();
@@ -37,10 +38,11 @@ struct Scene {
   Patches patches = Patches::ByObject;
 };
 
-/// An incremental sink for one file. Memory is bounded by a building; CityJSON also keeps the ids
-/// it used. The file appears under its name when it is complete; an abandoned writer leaves
-/// nothing. Origin, CRS, unit and axes stand in the header of OBJ, in the sidecar (shortened: in
-/// the header) of binary STL and in the metadata of CityJSON; ASCII STL has no place for them,
+/// An incremental sink for one file. Memory is bounded by a building; formats with gml_ids also
+/// keep those they used. The file appears under its name when it is complete; an abandoned writer
+/// leaves nothing. Origin, CRS, unit and axes stand in the header of OBJ and PLY, in the sidecar
+/// (shortened: in the header) of binary STL, in the field data of VTU, the asset of GLB, the
+/// metadata of CityJSON and the description of CityGML; ASCII STL has no place for them,
 /// report.json has.
 class BodyWriter {
  public:

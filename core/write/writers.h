@@ -19,8 +19,16 @@ WriterResult open_stl(const std::filesystem::path& folder, const Format& format,
                       const Scene& scene);
 WriterResult open_stl_binary(const std::filesystem::path& folder, const Format& format,
                              const Scene& scene);
+WriterResult open_ply(const std::filesystem::path& folder, const Format& format,
+                      const Scene& scene);
+WriterResult open_vtu(const std::filesystem::path& folder, const Format& format,
+                      const Scene& scene);
+WriterResult open_glb(const std::filesystem::path& folder, const Format& format,
+                      const Scene& scene);
 WriterResult open_cityjson(const std::filesystem::path& folder, const Format& format,
                            const Scene& scene);
+WriterResult open_cityjsonseq(const std::filesystem::path& folder, const Format& format,
+                              const Scene& scene);
 
 inline constexpr std::string_view kAxes = "x east, y north, z up, right-handed";
 

@@ -60,6 +60,10 @@ TEST(Golden, Stl) { expect_golden_scene("stl", Patches::ByObject, ""); }
 TEST(Golden, StlByType) { expect_golden_scene("stl", Patches::ByType, "by_type."); }
 TEST(Golden, BinaryStl) { expect_golden_scene("stl_binary", Patches::ByObject, ""); }
 TEST(Golden, BinaryStlByType) { expect_golden_scene("stl_binary", Patches::ByType, "by_type."); }
+TEST(Golden, Ply) { expect_golden_scene("ply", Patches::ByObject, ""); }
+TEST(Golden, Vtu) { expect_golden_scene("vtu", Patches::ByObject, ""); }
+TEST(Golden, Glb) { expect_golden_scene("glb", Patches::ByObject, ""); }
+TEST(Golden, CityJsonSeq) { expect_golden_scene("cityjsonseq", Patches::ByObject, ""); }
 TEST(Golden, CityJson) { expect_golden_scene("cityjson", Patches::ByObject, ""); }
 
 TEST(Golden, Picture) {

@@ -9,6 +9,7 @@
 
 #include "core/gates/gates.h"
 #include "core/pipeline/pipeline.h"
+#include "core/write/write.h"
 
 namespace citymesh {
 namespace {
@@ -72,18 +73,22 @@ void expect_gates_hold(const std::string& format, const Path& file, std::uint64_
   EXPECT_EQ(count, bodies);
 }
 
+std::string all_formats(const std::string& more = "") {
+  std::string keys;
+  for (const Format& format : formats())
+    keys += (keys.empty() ? "\"" : ",\"") + std::string(format.key) + '"';
+  return "{" + more + "\"formats\":[" + keys + "]}";
+}
+
 TEST(Run, DeliversAHouseInAllFormats) {
   Folder folder;
-  const auto outcome = run_on({data("fzk-haus/fzk_haus_lod2_v2.gml")}, folder,
-                              R"({"formats":["obj","stl","stl_binary","cityjson"]})");
+  const auto outcome = run_on({data("fzk-haus/fzk_haus_lod2_v2.gml")}, folder, all_formats());
   ASSERT_TRUE(outcome) << outcome.error().message;
   EXPECT_TRUE(outcome->complete);
   EXPECT_EQ(outcome->report.counts.requested, 1u);
   EXPECT_EQ(outcome->report.counts.delivered, 1u);
-  expect_gates_hold("obj", folder.path() / "model.obj", 1);
-  expect_gates_hold("stl", folder.path() / "model.stl", 1);
-  expect_gates_hold("stl_binary", folder.path() / "model_binary.stl", 1);
-  expect_gates_hold("cityjson", folder.path() / "model.city.json", 1);
+  for (const Format& format : formats())
+    expect_gates_hold(std::string(format.key), folder.path() / format.file_name, 1);
   for (const OutputFile& file : outcome->files)
     EXPECT_TRUE(std::filesystem::exists(folder.path() / file.file_name));
 
@@ -133,9 +138,8 @@ TEST(Run, ItsOwnCityJsonGoesThroughUnchanged) {
 
 TEST(Run, AnEmptyBoxIsASuccessWithAWarning) {
   Folder folder;
-  const auto outcome = run_on(
-      {data("berlin/3900_5819.gml")}, folder,
-      R"({"bbox":{"bbox":[13.0,52.0,13.01,52.01]},"formats":["obj","stl","stl_binary","cityjson"]})");
+  const auto outcome = run_on({data("berlin/3900_5819.gml")}, folder,
+                              all_formats(R"("bbox":{"bbox":[13.0,52.0,13.01,52.01]},)"));
   ASSERT_TRUE(outcome) << outcome.error().message;
   EXPECT_TRUE(outcome->complete);
   EXPECT_EQ(outcome->report.counts.requested, 0u);

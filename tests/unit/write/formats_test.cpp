@@ -6,6 +6,7 @@
 #include <csignal>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/gates/gates.h"
 #include "core/write/write.h"
@@ -83,8 +84,11 @@ Triangles triangles_of(const ParsedBody& body) {
 }
 
 class EveryFormat : public ::testing::TestWithParam<std::string_view> {};
-INSTANTIATE_TEST_SUITE_P(Formats, EveryFormat,
-                         ::testing::Values("obj", "stl", "stl_binary", "cityjson"),
+INSTANTIATE_TEST_SUITE_P(Formats, EveryFormat, ::testing::ValuesIn([] {
+                           std::vector<std::string_view> keys;
+                           for (const Format& format : formats()) keys.push_back(format.key);
+                           return keys;
+                         }()),
                          [](const auto& param) { return std::string(param.param); });
 
 TEST_P(EveryFormat, GivesBackTheSamePointsTrianglesAndPatchesOfEachBody) {
@@ -186,11 +190,19 @@ TEST_P(EveryFormat, ReportsAFullDisk) {
 }
 
 TEST(Formats, AreFoundByKeyAndListedForMessages) {
-  EXPECT_EQ(find_format("ply"), nullptr);
-  EXPECT_EQ(format_keys(), "obj, stl, stl_binary, cityjson");
+  EXPECT_EQ(find_format("dwg"), nullptr);
+  EXPECT_THAT(format_keys(), HasSubstr("obj, stl, stl_binary, ply, vtu, glb, cityjson"));
   EXPECT_EQ(find_format("stl_binary")->file_name, "model_binary.stl");
   EXPECT_EQ(find_format("stl_binary")->sidecar, "model_binary.patches.json");
-  EXPECT_TRUE(find_format("stl_binary")->float32);
+}
+
+TEST(Formats, HaveFilesOfTheirOwn) {
+  std::set<std::string_view> names;
+  for (const Format& format : formats()) {
+    EXPECT_TRUE(names.insert(format.file_name).second) << format.file_name;
+    EXPECT_FALSE(format.title.empty());
+    EXPECT_FALSE(format.media_type.empty());
+  }
 }
 
 TEST(Obj, StatesOriginCrsUnitAndAxesInItsHeader) {
