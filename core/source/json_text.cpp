@@ -172,6 +172,21 @@ Result<void> JsonText::members(const JsonSlice& object, std::vector<JsonMember>&
   return {};
 }
 
+Result<void> JsonText::elements(const JsonSlice& array, std::vector<JsonSlice>& values) const {
+  Cursor cursor(file_, array);
+  if (!cursor.take('[')) return syntax_error(cursor, "'['");
+  if (cursor.take(']')) return {};
+  do {
+    cursor.peek_solid();
+    JsonSlice value{.begin = cursor.offset(), .line = cursor.line()};
+    if (auto skipped = skip_value(cursor, max_depth_); !skipped) return skipped;
+    value.end = cursor.offset();
+    values.push_back(value);
+  } while (cursor.take(','));
+  if (!cursor.take(']')) return syntax_error(cursor, "',' or ']'");
+  return {};
+}
+
 Result<void> JsonText::triples(const JsonSlice& array, std::uint64_t max_count,
                                std::vector<Point3>& triples) const {
   Cursor cursor(file_, array);

@@ -31,6 +31,8 @@ class JsonText {
   JsonSlice all() const;
   /// Errors: DataLoss naming the line. `members` holds what came before.
   Result<void> members(const JsonSlice& object, std::vector<JsonMember>& members) const;
+  /// The values of a list. Errors: DataLoss naming the line. `values` holds what came before.
+  Result<void> elements(const JsonSlice& array, std::vector<JsonSlice>& values) const;
   /// [[x, y, z], …]; numbers too large for a double become infinite. Errors: DataLoss.
   Result<void> triples(const JsonSlice& array, std::uint64_t max_count,
                        std::vector<Point3>& triples) const;

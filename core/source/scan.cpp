@@ -181,7 +181,7 @@ FileRecord plain_file(const std::filesystem::path& path) {
 Result<FileScan> scan_file(FileRecord file, const ReadLimits& limits, bool with_footprints,
                            const std::stop_token& stop) {
   FileScan scan{std::move(file)};
-  const auto format = detect_format(scan.text, limits);
+  const auto format = detect_format(scan.text, scan.name, limits);
   if (!format) {
     scan.facts.failure = format.error().message;
     scan.facts.not_a_city_model = format.error().code == ErrorCode::InvalidArgument;

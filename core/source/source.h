@@ -89,13 +89,12 @@ struct FileSourceOptions {
   Crs assume_crs{};  ///< for files that state none
 };
 
-/// CityGML 1.0, 2.0, 3.0 and CityJSON(Seq) 1.0, 1.1, 2.0 files (also .gz), found by content, not by
-/// name. Directories are searched one level deep, in the order of names; what is no city model in
-/// them is passed over with a warning. What a first pass finds is kept until the file changes.
-/// Files that state no CRS are taken to be in the query's `source_crs`, else in its `crs`.
-/// Thread-safe.
-/// Errors: NotFound for a path that does not exist, PermissionDenied for one that
-/// cannot be read.
+/// CityGML 1.0, 2.0, 3.0, CityJSON(Seq) 1.0, 1.1, 2.0, JSON-FG, tu3djson, OBJ, OFF, PLY, POLY and
+/// STL files (also .gz), found by content; see docs/formats.md. Directories are searched one level
+/// deep, in the order of names; what is no city model in them is passed over with a warning. What a
+/// first pass finds is kept until the file changes. Files that state no CRS are taken to be in the
+/// query's `source_crs`, else in its `crs`. Thread-safe. Errors: NotFound for a path that does not
+/// exist, PermissionDenied for one that cannot be read.
 Result<std::unique_ptr<CitySource>> open_files(std::vector<std::filesystem::path> paths,
                                                FileSourceOptions options);
 

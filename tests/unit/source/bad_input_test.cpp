@@ -288,8 +288,8 @@ TEST(BadFile, UnreadableFolderIsPermissionDenied) {
 TEST(BadFile, WhatIsNoCityModelIsNamed) {
   for (const auto& [text, reason] : {std::pair<std::string, std::string>{"", "empty"},
                                      {std::string("PK\3\4zip"), "zip"},
-                                     {"v 0 0 0\nf 1 1 1\n", "neither XML nor JSON"},
-                                     {"[1, 2]", "neither XML nor JSON"}}) {
+                                     {"x 0 0 0\nf 1 1 1\n", "unknown"},
+                                     {"[1, 2]", "unknown"}}) {
     const Reading reading = read_text("a.gml", text);
     EXPECT_FALSE(reading.error);
     EXPECT_EQ(reading.input().state, "failed");
