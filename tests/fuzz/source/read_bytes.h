@@ -31,8 +31,9 @@ class MemoryFile {
 };
 
 /// Reads the bytes in both passes, as a source does, and demands what every reader promises:
-/// indices that are in range, and two passes that agree.
-inline void read_bytes(const std::uint8_t* data, std::size_t size) {
+/// indices that are in range, and two passes that agree. `name` helps to recognise the format.
+inline void read_bytes(const std::uint8_t* data, std::size_t size,
+                       const std::string& name = "fuzz") {
   const MemoryFile file(data, size);
   ReadLimits limits;
   limits.max_depth = 64;
@@ -40,7 +41,9 @@ inline void read_bytes(const std::uint8_t* data, std::size_t size) {
   limits.max_building_bytes = 1u << 20;
   limits.max_points_per_building = 20'000;
 
-  const auto scan = scan_file(plain_file(file.path()), limits, true, {});
+  FileRecord record = plain_file(file.path());
+  record.name = name;
+  const auto scan = scan_file(record, limits, true, {});
   if (!scan || !scan->format) return;
   std::vector<SrsPlacement> placements(scan->facts.srs_names.size());
   for (SrsPlacement& placement : placements) {
@@ -50,7 +53,7 @@ inline void read_bytes(const std::uint8_t* data, std::size_t size) {
   }
   BuildingMaker maker(std::move(placements), {});
   const DocumentOptions options{
-      .limits = limits, .stem = file_stem(file.path()), .shared = scan->shared.get()};
+      .limits = limits, .stem = file_stem(name), .shared = scan->shared.get()};
   DocumentFacts facts;
   facts.srs_names = scan->facts.srs_names;
   std::size_t count = 0;
