@@ -29,6 +29,8 @@ constexpr std::array kParsers{
     Parser{"glb", parse_glb_text, parse_glb_file},
     Parser{"cityjson", parse_cityjson_text, parse_cityjson_file},
     Parser{"cityjsonseq", parse_cityjsonseq_text, parse_cityjsonseq_file},
+    Parser{"citygml2", parse_citygml_text, parse_citygml_file},
+    Parser{"citygml3", parse_citygml_text, parse_citygml_file},
 };
 
 Result<const Parser*> find_parser(std::string_view format) {

@@ -21,6 +21,8 @@ Result<void> parse_cityjson_text(std::string_view text, const ParsedBodySink& si
 Result<void> parse_cityjson_file(const std::filesystem::path& file, const ParsedBodySink& sink);
 Result<void> parse_cityjsonseq_text(std::string_view text, const ParsedBodySink& sink);
 Result<void> parse_cityjsonseq_file(const std::filesystem::path& file, const ParsedBodySink& sink);
+Result<void> parse_citygml_text(std::string_view text, const ParsedBodySink& sink);
+Result<void> parse_citygml_file(const std::filesystem::path& file, const ParsedBodySink& sink);
 Result<void> parse_ply_text(std::string_view text, const ParsedBodySink& sink);
 Result<void> parse_ply_file(const std::filesystem::path& file, const ParsedBodySink& sink);
 Result<void> parse_vtu_text(std::string_view text, const ParsedBodySink& sink);

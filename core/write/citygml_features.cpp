@@ -6,7 +6,9 @@
 #include <cmath>
 #include <optional>
 #include <set>
+#include <span>
 #include <string_view>
+#include <utility>
 
 #include "core/write/text.h"
 

@@ -27,9 +27,13 @@ constexpr std::array kFormats{
            "CityJSON 2.0 with ids, attributes, addresses and semantics", true},
     Format{"cityjsonseq", "model.city.jsonl", "application/city+json-seq", "",
            "CityJSONSeq 2.0, a building per line", true},
+    Format{"citygml2", "model.gml", "application/gml+xml", "",
+           "CityGML 2.0 with ids, attributes, addresses and semantics", true},
+    Format{"citygml3", "model.citygml3.gml", "application/gml+xml", "",
+           "CityGML 3.0 with ids, attributes, addresses and semantics", true},
 };
-constexpr std::array kOpen{open_obj, open_stl, open_stl_binary, open_ply,
-                           open_vtu, open_glb, open_cityjson,   open_cityjsonseq};
+constexpr std::array kOpen{open_obj, open_stl,      open_stl_binary,  open_ply,      open_vtu,
+                           open_glb, open_cityjson, open_cityjsonseq, open_citygml2, open_citygml3};
 static_assert(kFormats.size() == kOpen.size());
 
 }  // namespace

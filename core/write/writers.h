@@ -29,6 +29,10 @@ WriterResult open_cityjson(const std::filesystem::path& folder, const Format& fo
                            const Scene& scene);
 WriterResult open_cityjsonseq(const std::filesystem::path& folder, const Format& format,
                               const Scene& scene);
+WriterResult open_citygml2(const std::filesystem::path& folder, const Format& format,
+                           const Scene& scene);
+WriterResult open_citygml3(const std::filesystem::path& folder, const Format& format,
+                           const Scene& scene);
 
 inline constexpr std::string_view kAxes = "x east, y north, z up, right-handed";
 

@@ -64,6 +64,8 @@ TEST(Golden, Ply) { expect_golden_scene("ply", Patches::ByObject, ""); }
 TEST(Golden, Vtu) { expect_golden_scene("vtu", Patches::ByObject, ""); }
 TEST(Golden, Glb) { expect_golden_scene("glb", Patches::ByObject, ""); }
 TEST(Golden, CityJsonSeq) { expect_golden_scene("cityjsonseq", Patches::ByObject, ""); }
+TEST(Golden, CityGml2) { expect_golden_scene("citygml2", Patches::ByObject, ""); }
+TEST(Golden, CityGml3) { expect_golden_scene("citygml3", Patches::ByObject, ""); }
 TEST(Golden, CityJson) { expect_golden_scene("cityjson", Patches::ByObject, ""); }
 
 TEST(Golden, Picture) {

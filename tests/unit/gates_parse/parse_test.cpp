@@ -43,8 +43,8 @@ TEST(Parse, NamesAFormatItDoesNotKnow) {
 }
 
 TEST(Parse, NamesAFileThatIsNotThere) {
-  for (const char* format :
-       {"obj", "stl", "stl_binary", "ply", "vtu", "glb", "cityjson", "cityjsonseq"}) {
+  for (const char* format : {"obj", "stl", "stl_binary", "ply", "vtu", "glb", "cityjson",
+                             "cityjsonseq", "citygml2", "citygml3"}) {
     const auto result =
         parse_file(format, "/nowhere/model.x", [](ParsedBody&&) { return Result<void>{}; });
     ASSERT_FALSE(result);
