@@ -24,9 +24,9 @@ def known_files(table, data, only):
     for line in table.read_text(encoding="utf-8").splitlines():
         if line.startswith("#") or not line.strip():
             continue
-        name, form, buildings, parts = line.split("\t")
+        name, form, buildings, parts, *options = line.split("\t")
         if only in name:
-            yield name, data / name, form, int(buildings), int(parts)
+            yield name, data / name, form, int(buildings), int(parts), options
 
 
 def unpacked(path, folder):
@@ -158,15 +158,16 @@ def main():
     if not data or not Path(data).is_dir():
         print("skipped: CITYMESH_EXTRA_DATA names no folder; it holds the city models of the acceptance run")
         return 77
-    extra = [word for option in arguments.set for word in ("--set", option)]
+    settings = lambda options: [word for option in options for word in ("--set", option)]
     files = list(known_files(ROOT / "tests/support/expected_counts.tsv", Path(data), arguments.only))
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        results = list(pool.map(lambda file: judge(arguments.program, arguments.checker, file[1], file[3], extra), files))
+        results = list(pool.map(lambda file: judge(arguments.program, arguments.checker, file[1], file[3],
+                                                    settings(file[5] + arguments.set)), files))
 
     lines = ["| file | expected | requested | delivered | merged | dropped | rungs | bodies, OBJ / STL | |",
              "| --- | ---: | ---: | ---: | ---: | --- | --- | --- | --- |"]
     totals = collections.Counter()
-    for (name, _, _, expected, _), (cells, faults) in zip(files, results):
+    for (name, _, _, expected, *_), (cells, faults) in zip(files, results):
         lines.append(f"| {name} | {expected} | " + " | ".join(map(str, cells)) + f" | {'**fault**' if faults else 'ok'} |")
         totals.update(expected=expected, files=1, faulty=bool(faults))
         for key, cell in zip(("requested", "delivered", "merged"), cells):

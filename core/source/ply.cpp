@@ -82,7 +82,7 @@ double value_of(Scalar type, std::uint64_t bits) {
 }
 
 /// What becomes of the values of a property.
-enum class Role : std::uint8_t { Unused, X, Y, Z, Corners, Body };
+enum class Role : std::uint8_t { Unused, X, Y, Z, Corners, Body, Surface };
 
 struct Property {
   Scalar type = Scalar::Int32;
@@ -139,9 +139,9 @@ class PlyReader {
   // ---- header ----------------------------------------------------------------------------------
 
   bool read_header() {
-    constexpr std::uint64_t kMaxHeaderLines = 10'000;
+    constexpr std::size_t kMaxElements = 1000;
     bool format_seen = false;
-    while (input_.line() < kMaxHeaderLines) {
+    while (elements_.size() <= kMaxElements) {
       const auto more = input_.next_line(line_);
       if (!more) return fail_here(more.error().message);
       if (!*more) return fail_here("the file ends in its header");
@@ -163,11 +163,37 @@ class PlyReader {
         rest_of_line_ = {};
         line_.clear();
         return format_seen ? check_elements() : fail_here("the format is missing");
-      } else if (!word.empty() && word != "comment" && word != "obj_info") {
+      } else if (word == "comment") {
+        read_comment(rest);
+      } else if (!word.empty() && word != "obj_info") {
         return fail_here("'" + std::string(word.substr(0, 60)) + "' is unknown in a header");
       }
     }
-    return fail_here("the header is longer than " + std::to_string(kMaxHeaderLines) + " lines");
+    return fail_here("the header has more than " + std::to_string(kMaxElements) + " elements");
+  }
+
+  // Our own files name bodies and surface types in comments:
+  //   comment surface_type 0 Unknown 1 GroundSurface …
+  //   comment body {"body":0,"name":"house", …
+  void read_comment(std::string_view rest) {
+    const auto about = next_word(rest);
+    if (about == "surface_type") {
+      for (auto number = next_word(rest); !number.empty(); number = next_word(rest)) {
+        const auto value = number_from<std::int64_t>(number);
+        const auto type = surface_type_from(next_word(rest));
+        if (value && type) types_.emplace(*value, *type);
+      }
+    } else if (about == "body") {
+      constexpr std::string_view kNumber = "{\"body\":", kName = ",\"name\":\"";
+      rest = trimmed(rest);
+      if (!rest.starts_with(kNumber)) return;
+      rest.remove_prefix(kNumber.size());
+      const auto value = number_from<std::int64_t>(rest.substr(0, rest.find(',')));
+      const auto name = rest.find(kName);
+      if (!value || name == rest.npos) return;
+      rest.remove_prefix(name + kName.size());
+      names_.emplace(*value, rest.substr(0, rest.find('"')));
+    }
   }
 
   bool read_format(std::string_view name) {
@@ -211,7 +237,7 @@ class PlyReader {
     if (kind != ElementKind::Face) return Role::Unused;
     if (list)
       return name == "vertex_indices" || name == "vertex_index" ? Role::Corners : Role::Unused;
-    return name == "body" ? Role::Body : Role::Unused;
+    return name == "body" ? Role::Body : name == "surface_type" ? Role::Surface : Role::Unused;
   }
 
   bool check_elements() {
@@ -275,7 +301,7 @@ class PlyReader {
   bool read_one(const Element& element) {
     Point3 point{};
     corners_.clear();
-    std::int64_t body = 0;
+    std::int64_t body = 0, surface = -1;
     for (const Property& property : element.properties) {
       std::uint64_t count = 1;
       if (property.count_type) {
@@ -308,6 +334,9 @@ class PlyReader {
           case Role::Body:
             body = whole(*value);
             break;
+          case Role::Surface:
+            surface = whole(*value);
+            break;
           case Role::Unused:
             break;
         }
@@ -316,16 +345,22 @@ class PlyReader {
     if (element.kind == ElementKind::Vertex)
       soup_.add_point(point);
     else if (element.kind == ElementKind::Face)
-      add_face(body);
+      add_face(body, surface);
     return true;
   }
 
-  void add_face(std::int64_t body) {
+  void add_face(std::int64_t body, std::int64_t surface) {
     const auto known = buildings_.find(body);
-    const std::uint32_t building =
-        known != buildings_.end() ? known->second : soup_.add_building({});
-    if (known == buildings_.end()) buildings_.emplace(body, building);
-    soup_.begin_face(building);
+    std::uint32_t building = 0;
+    if (known != buildings_.end()) {
+      building = known->second;
+    } else {
+      const auto name = names_.find(body);
+      building = soup_.add_building(name == names_.end() ? std::string() : name->second);
+      buildings_.emplace(body, building);
+    }
+    const auto type = types_.find(surface);
+    soup_.begin_face(building, type == types_.end() ? std::nullopt : std::optional(type->second));
     for (const std::int64_t corner : corners_) soup_.add_corner(corner, corner);
   }
 
@@ -340,7 +375,9 @@ class PlyReader {
   std::string_view rest_of_line_{};
   std::string problem_{};
   std::vector<std::int64_t> corners_{};
-  std::unordered_map<std::int64_t, std::uint32_t> buildings_{};
+  std::unordered_map<std::int64_t, std::uint32_t> buildings_{};  ///< by body
+  std::unordered_map<std::int64_t, std::string> names_{};        ///< by body
+  std::unordered_map<std::int64_t, SurfaceType> types_{};
 };
 
 }  // namespace
