@@ -301,8 +301,7 @@ void append_xal3(std::string& xml, const Address& address) {
   if (!address.street.empty() || !address.house_number.empty()) {
     xml += "<xAL:Thoroughfare>\n";
     append_optional(xml, "<xAL:NameElement>", address.street, "</xAL:NameElement>\n");
-    append_optional(xml, "<xAL:Number><xAL:Identifier>", address.house_number,
-                    "</xAL:Identifier></xAL:Number>\n");
+    append_optional(xml, "<xAL:Number>", address.house_number, "</xAL:Number>\n");
     xml += "</xAL:Thoroughfare>\n";
   }
   append_optional(xml, "<xAL:PostCode><xAL:Identifier>", address.zip_code,

@@ -12,6 +12,7 @@
 #include "core/write/write.h"
 #include "tests/unit/write/files.h"
 #include "tests/unit/write/scene.h"
+#include "tests/unit/write/writing.h"
 
 namespace citymesh {
 namespace {
@@ -20,26 +21,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const Scene kScene{{"EPSG:25833"}, {391000, 5820000, 0}, "export-for-simulation"};
-
-std::string write_scene(const std::filesystem::path& folder, std::string_view key,
-                        const std::vector<BuildingBodies>& buildings, const Scene& scene = kScene) {
-  const Format& format = *find_format(key);
-  auto writer = open_writer(format, folder, scene);
-  EXPECT_TRUE(writer);
-  for (const auto& building : buildings) EXPECT_TRUE(writer.value()->add(building));
-  EXPECT_TRUE(writer.value()->finish());
-  return test::read_file(folder / format.file_name);
-}
-
-std::string encode(std::string_view key, const BuildingBodies& building,
-                   const Scene& scene = kScene) {
-  test::TemporaryFolder folder;
-  auto writer = open_writer(*find_format(key), folder.path(), scene);
-  auto text = writer.value()->encode(building);
-  EXPECT_TRUE(text) << text.error().message;
-  return text ? *text : std::string();
-}
+using test::encode;
+using test::kScene;
+using test::write_scene;
 
 std::vector<ParsedBody> parsed_file(std::string_view key, const std::filesystem::path& folder) {
   std::vector<ParsedBody> bodies;

@@ -159,6 +159,65 @@ inline BuildingBodies building(const std::string& name, TriangleMesh mesh,
   return bodies;
 }
 
+/// A house with a window in its south wall, at LoD3, all its members used.
+inline BuildingBodies rich_building() {
+  MeshBuilder b;
+  const auto a0 = b.point(0, 0, 0), a1 = b.point(8, 0, 0), a2 = b.point(8, 6, 0),
+             a3 = b.point(0, 6, 0), e0 = b.point(0, 0, 3), e1 = b.point(8, 0, 3),
+             e2 = b.point(8, 6, 3), e3 = b.point(0, 6, 3), w0 = b.point(2, 0, 1),
+             w1 = b.point(4, 0, 1), w2 = b.point(4, 0, 2), w3 = b.point(2, 0, 2);
+  b.face(SurfaceType::GroundSurface, "GML_ground", {a0, a3, a2, a1});
+  b.face(SurfaceType::WallSurface, "GML_south", {a0, a1, e1, e0}).rings.push_back({w0, w3, w2, w1});
+  b.face(SurfaceType::Window, "GML_window", {w0, w1, w2, w3});
+  b.face(SurfaceType::WallSurface, "GML_east", {a1, a2, e2, e1});
+  b.face(SurfaceType::WallSurface, "", {a2, a3, e3, e2});
+  b.face(SurfaceType::WallSurface, "", {a3, a0, e0, e3});
+  b.face(SurfaceType::RoofSurface, "{roof 1}", {e0, e1, e2, e3});
+
+  BuildingBodies building = citymesh::test::building("b_1_house_one", b.mesh(), "healed");
+  building.gml_id = "1 house:one";
+  building.attributes = {{"owner", std::string("A & B <\"C\">")},
+                         {"measuredHeight", 3.25},
+                         {"storeysAboveGround", std::int64_t{1}},
+                         {"storeysBelowGround", std::string("some")},
+                         {"yearOfConstruction", std::int64_t{1987}},
+                         {"roofType", std::string("1000")},
+                         {"function", std::string("1010;1020")},
+                         {"class", std::string("1000")},
+                         {"usage", std::string("1010")},
+                         {"creationDate", std::string("2020-02-03")},
+                         {"dateOfConstruction", std::string("1987-05-06")},
+                         {"name", std::string("Rathaus \xC3\xA4")},
+                         {"listed", true},
+                         {"rooms", std::int64_t{-5}},
+                         {"rent", 12.5}};
+  building.addresses = {{"Main Street", "12a", "PO 7", "12345", "Berlin", "BE", "Germany"},
+                        {.street = "Side Street", .city = "Berlin"}};
+  Body& house = building.bodies[0];
+  house.gml_id = building.gml_id;
+  house.lod = "3";
+  house.attributes = building.attributes;
+  house.addresses = building.addresses;
+
+  Body part{.name = "part", .gml_id = "part", .kind = ObjectKind::BuildingPart, .lod = "2.2"};
+  part.attributes = {{"roofType", std::string("flat roof")}};
+  part.addresses = {{.city = "Potsdam"}};
+  part.mesh = with_shaft_and_cavity();
+  for (GridPoint& p : part.mesh.points) p.x += 20 * 10'000;
+  building.bodies.push_back(std::move(part));
+
+  Body low{.name = "low", .gml_id = "low", .kind = ObjectKind::BuildingPart, .lod = "1"};
+  low.mesh = box(2, 2, 2, {40, 0, 0});
+  building.bodies.push_back(std::move(low));
+
+  Body balcony{.name = "balcony", .gml_id = "balcony", .kind = ObjectKind::BuildingInstallation};
+  balcony.lod = "2";
+  balcony.attributes = {{"function", std::string("1000")}, {"measuredHeight", 1.5}};
+  balcony.mesh = box(2, 1, 1, {2, -5, 1});
+  building.bodies.push_back(std::move(balcony));
+  return building;
+}
+
 /// Streets of gabled and flat houses, perimeter blocks with something in the yard, a few towers.
 inline std::vector<BuildingBodies> synthetic_city(int streets = 6, int blocks = 5) {
   std::vector<BuildingBodies> city;
