@@ -120,7 +120,9 @@ std::optional<double> finite_number(std::string_view text) {
 /// Whether an element of the schema can hold the value so that a reader gets the same back.
 bool fits(Content content, const AttributeValue& value, std::string_view text) {
   const bool is_text = std::holds_alternative<std::string>(value);
-  const bool is_trimmed = !text.empty() && text.front() != ' ' && text.back() != ' ';
+  constexpr std::string_view kBlanks = " \t\n\r";
+  const bool is_trimmed = !text.empty() && kBlanks.find(text.front()) == std::string_view::npos &&
+                          kBlanks.find(text.back()) == std::string_view::npos;
   switch (content) {
     case Content::Text:
     case Content::Code:
@@ -149,13 +151,28 @@ bool fits(Content content, const AttributeValue& value, std::string_view text) {
   return false;
 }
 
+/// Element text: line breaks and tabs stay as they are.
+void append_text(std::string& xml, std::string_view text) {
+  while (!text.empty()) {
+    const auto end = std::min(text.find_first_of("\n\t\r"), text.size());
+    append_markup(xml, text.substr(0, end));
+    if (end < text.size()) {
+      if (text[end] == '\r')
+        xml += "&#13;";
+      else
+        xml += text[end];
+    }
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+}
+
 void append_element(std::string& xml, std::string_view name, std::string_view text,
                     std::string_view attributes = "") {
   xml += '<';
   xml += name;
   xml += attributes;
   xml += '>';
-  append_markup(xml, text);
+  append_text(xml, text);
   xml += "</";
   xml += name;
   xml += ">\n";

@@ -287,7 +287,7 @@
 <xAL:Locality><xAL:NameElement>Berlin</xAL:NameElement></xAL:Locality>
 <xAL:Thoroughfare>
 <xAL:NameElement>Main Street</xAL:NameElement>
-<xAL:Number><xAL:Identifier>12a</xAL:Identifier></xAL:Number>
+<xAL:Number>12a</xAL:Number>
 </xAL:Thoroughfare>
 <xAL:PostCode><xAL:Identifier>12345</xAL:Identifier></xAL:PostCode>
 <xAL:PostOffice><xAL:Identifier>PO 7</xAL:Identifier></xAL:PostOffice>

@@ -2,6 +2,7 @@
 // mesh of it, byte by byte.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -20,8 +21,7 @@ constexpr std::array<std::string_view, 4> kModelFormats{"cityjson", "cityjsonseq
 Result<RunOutcome> run_on(const Path& file, const Path& folder, const std::string& formats) {
   auto source = open_files({file}, {});
   if (!source) return source.error();
-  return run("export-for-simulation",
-             R"({"installations":"keep","lod":["3","2","1"],"formats":[)" + formats + "]}",
+  return run("export-for-simulation", R"({"lod":["3","2","1"],"formats":[)" + formats + "]}",
              **source, folder, {});
 }
 
@@ -41,9 +41,44 @@ nlohmann::json model_of(const Path& folder) {
   return model;
 }
 
+/// A mesh without the line that names the CRS: CityJSON has no form for a compound one.
+std::string without_crs(std::string mesh) {
+  const auto at = mesh.find("# crs ");
+  return at == std::string::npos ? mesh : mesh.erase(at, mesh.find('\n', at) - at);
+}
+
+/// Type and id of the surface of every face, in order.
+std::vector<std::pair<std::string, std::string>> surfaces_of(const nlohmann::json& geometry) {
+  std::vector<std::pair<std::string, std::string>> faces;
+  if (!geometry.contains("semantics")) return faces;
+  for (const auto& value : geometry["semantics"]["values"].flatten()) {
+    const auto& surface = geometry["semantics"]["surfaces"][value.get<std::size_t>()];
+    faces.emplace_back(surface["type"], surface.value("id", ""));
+  }
+  return faces;
+}
+
+/// A surface that had no id may have got one, a repeated id a number.
+void expect_same_geometry(const nlohmann::json& read, const nlohmann::json& written,
+                          const std::string& where) {
+  ASSERT_EQ(read.size(), written.size()) << where;
+  for (std::size_t g = 0; g < read.size(); ++g) {
+    EXPECT_EQ(read[g]["boundaries"], written[g]["boundaries"]) << where;
+    EXPECT_EQ(read[g]["lod"].get<std::string>()[0], written[g]["lod"].get<std::string>()[0])
+        << where;
+    const auto after = surfaces_of(read[g]), before = surfaces_of(written[g]);
+    ASSERT_EQ(after.size(), before.size()) << where;
+    for (std::size_t f = 0; f < after.size(); ++f) {
+      EXPECT_EQ(after[f].first, before[f].first) << where << " face " << f;
+      EXPECT_TRUE(after[f].second.starts_with(before[f].second)) << where << " face " << f;
+    }
+  }
+}
+
+/// A file of tests/data, or of CITYMESH_EXTRA_DATA.
 struct Case {
   std::string file;
-  bool has_ids = true;    ///< every surface and polygon has one: no format makes up any
+  bool xml_ids = true;    ///< XML can hold the ids of its objects
   bool in_extra = false;  ///< below CITYMESH_EXTRA_DATA
 };
 
@@ -78,19 +113,23 @@ TEST_P(RoundTrip, GivesTheSameCityModelAndTheSameMesh) {
     ASSERT_TRUE(read) << key << ": " << read.error().message;
     EXPECT_EQ(read->report.counts.delivered, written->report.counts.delivered) << key;
     for (const auto& [rung, count] : read->report.rungs) EXPECT_EQ(rung, "as_is") << key;
-    EXPECT_TRUE(test::read_file(second.path() / "model.obj") == mesh) << key;
+    EXPECT_TRUE(without_crs(test::read_file(second.path() / "model.obj")) == without_crs(mesh))
+        << key;
     const auto again = model_of(second.path());
     EXPECT_EQ(again["transform"], model["transform"]) << key;
-    EXPECT_EQ(again["metadata"]["referenceSystem"], model["metadata"]["referenceSystem"]) << key;
+    EXPECT_EQ(again["metadata"].value("referenceSystem", ""),
+              model["metadata"].value("referenceSystem", ""))
+        << key;
     ASSERT_EQ(again["CityObjects"].size(), model["CityObjects"].size()) << key;
+    if (key.starts_with("citygml") && !GetParam().xml_ids) continue;
     for (const auto& [id, object] : model["CityObjects"].items()) {
       ASSERT_TRUE(again["CityObjects"].contains(id)) << key << " " << id;
       const auto& other = again["CityObjects"][id];
       for (const char* member : {"type", "attributes", "address", "parents", "children"})
         EXPECT_EQ(other.value(member, nlohmann::json()), object.value(member, nlohmann::json()))
             << key << " " << id << " " << member;
-      if (!GetParam().has_ids || !object.contains("geometry")) continue;
-      EXPECT_EQ(other["geometry"], object["geometry"]) << key << " " << id;
+      if (object.contains("geometry"))
+        expect_same_geometry(other["geometry"], object["geometry"], std::string(key) + " " + id);
     }
   }
 }
@@ -102,9 +141,11 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"citygml2/building_and_garage_lod2.gml"},
                       Case{"citygml2/building_lod3.gml"}, Case{"citygml2/delft_lod1.gml"},
                       Case{"citygml1/saxony_lod2.gml.gz"}, Case{"citygml1/zurich_lod2.gml"},
-                      Case{"cityjson/rotterdam_subset.json"},
-                      Case{"cityjson/building_with_innerring.city.json"},
-                      Case{"cityjson/lod2_buildings_v2.json"}),
+                      Case{"cityjson/rotterdam_subset.json", false},
+                      Case{"cityjson/building_with_innerring.city.json", false},
+                      Case{"cityjson/lod2_buildings_v2.json"},
+                      Case{"vienna-lod2/Fichtegasse.gml", true, true},
+                      Case{"ingolstadt-lod3/4018106.xml", false, true}),
     test_name);
 
 }  // namespace
