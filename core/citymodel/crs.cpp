@@ -236,6 +236,22 @@ struct Transformer::Impl {
   std::string from{}, to{};
 };
 
+namespace {
+
+// x east and y north on both sides.
+Pj create_operation(PJ_CONTEXT* context, const PJ* source, const PJ* target) {
+  const Pj raw(proj_create_crs_to_crs_from_pj(context, source, target, nullptr, nullptr));
+  return raw ? Pj(proj_normalize_for_visualization(context, raw.get())) : nullptr;
+}
+
+template <class Impl>
+Error no_transformation(const Impl& impl) {
+  return fail(ErrorCode::InvalidArgument,
+              "PROJ knows no transformation from '" + impl.from + "' to '" + impl.to + "'");
+}
+
+}  // namespace
+
 Transformer::Transformer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Transformer::Transformer(Transformer&&) noexcept = default;
 Transformer& Transformer::operator=(Transformer&&) noexcept = default;
@@ -262,12 +278,22 @@ Result<Transformer> Transformer::create(const Crs& from, const Crs& to) {
                                      PJ_COMP_EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS))
     return Transformer(std::move(impl));
 
-  const Pj raw(
-      proj_create_crs_to_crs_from_pj(context, source.get(), target.get(), nullptr, nullptr));
-  if (raw) impl->operation.reset(proj_normalize_for_visualization(context, raw.get()));
-  if (!impl->operation)
-    return fail(ErrorCode::InvalidArgument,
-                "PROJ knows no transformation from '" + from.id + "' to '" + to.id + "'");
+  impl->operation = create_operation(context, source.get(), target.get());
+  if (!impl->operation) return no_transformation(*impl);
+  return Transformer(std::move(impl));
+}
+
+Result<Transformer> Transformer::to_degrees(const Crs& from) {
+  auto impl = std::make_unique<Impl>();
+  impl->from = from.id;
+  impl->to = "its geographic CRS";
+  impl->context = new_context();
+  PJ_CONTEXT* context = impl->context.get();
+  const Pj source = create_horizontal(context, from);
+  if (!source) return unknown_crs(from);
+  const Pj target(proj_crs_get_geodetic_crs(context, source.get()));
+  if (target) impl->operation = create_operation(context, source.get(), target.get());
+  if (!impl->operation) return no_transformation(*impl);
   return Transformer(std::move(impl));
 }
 

@@ -28,7 +28,7 @@ bool plausible_place(const CrsFacts& facts, double longitude_deg, double latitud
 
 bool plausible(const Crs& crs, const CrsFacts& facts, Point3 centre, CrsBook& book) {
   if (facts.geographic) return plausible_place(facts, centre.x, centre.y);
-  const auto& to_degrees = book.transformer(crs, Crs{"OGC:CRS84"});
+  const auto& to_degrees = book.to_degrees(crs);
   std::array<Point3, 1> place{centre};
   if (!to_degrees || !to_degrees->apply(place)) return false;
   return plausible_place(facts, place[0].x, place[0].y);
@@ -51,6 +51,12 @@ const Result<Transformer>& CrsBook::transformer(const Crs& from, const Crs& to) 
   const auto found = transformers_.find(key);
   if (found != transformers_.end()) return found->second;
   return transformers_.emplace(key, Transformer::create(from, to)).first->second;
+}
+
+const Result<Transformer>& CrsBook::to_degrees(const Crs& crs) {
+  const auto found = to_degrees_.find(crs.id);
+  if (found != to_degrees_.end()) return found->second;
+  return to_degrees_.emplace(crs.id, Transformer::to_degrees(crs)).first->second;
 }
 
 Box3 with_axes_swapped(Box3 box) {

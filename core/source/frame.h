@@ -17,10 +17,13 @@ class CrsBook {
   const Result<CrsFacts>& facts(const Crs& crs);
   /// The transformation, x east and y north on both sides.
   const Result<Transformer>& transformer(const Crs& from, const Crs& to);
+  /// To longitude and latitude of its own datum.
+  const Result<Transformer>& to_degrees(const Crs& crs);
 
  private:
   std::map<std::string, Result<CrsFacts>> facts_{};
   std::map<std::pair<std::string, std::string>, Result<Transformer>> transformers_{};
+  std::map<std::string, Result<Transformer>> to_degrees_{};
 };
 
 /// One CRS name of a file and how the file means it.
