@@ -1,3 +1,5 @@
+#include <stdlib.h>
+
 #include <algorithm>
 #include <map>
 #include <mutex>
@@ -8,12 +10,41 @@
 #include "core/source/listing.h"
 #include "core/source/scan.h"
 #include "core/source/source.h"
+#include "core/source/zip.h"
 
 namespace citymesh {
 namespace {
 
 namespace fs = std::filesystem;
 using namespace source;
+
+/// A folder of its own below the system's for such things, removed at the end.
+class TemporaryFolder {
+ public:
+  static Result<TemporaryFolder> make() {
+    std::error_code error;
+    std::string name = (fs::temp_directory_path(error) / "citymesh-XXXXXX").string();
+    if (error || !::mkdtemp(name.data()))
+      return fail(ErrorCode::Unavailable, "no temporary folder can be made to unpack archives");
+    TemporaryFolder folder;
+    folder.path_ = name;
+    return folder;
+  }
+  TemporaryFolder() = default;
+  TemporaryFolder(TemporaryFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+  TemporaryFolder& operator=(TemporaryFolder&& other) noexcept {
+    std::swap(path_, other.path_);
+    return *this;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_{};
+};
 
 /// What first passes found, kept in memory until a file changes.
 class ScannedFiles final : public Catalogue {
@@ -23,7 +54,8 @@ class ScannedFiles final : public Catalogue {
 
   Result<std::vector<std::shared_ptr<const FileRecord>>> files(bool with_footprints,
                                                                const RunContext& context) override {
-    const auto listed = list_files(paths_);
+    auto listed = list_files(paths_);
+    if (listed) listed = unpacked(std::move(*listed));
     if (!listed) return listed.error();
     std::vector<Result<std::shared_ptr<const FileScan>>> scans(listed->size(),
                                                                std::shared_ptr<const FileScan>());
@@ -53,6 +85,35 @@ class ScannedFiles final : public Catalogue {
            extent.max.y >= box.min.y;
   }
 
+  /// Archives are replaced by their members, unpacked once. One that cannot be unpacked stays, to be
+  /// reported as a file that cannot be read.
+  Result<std::vector<FileRecord>> unpacked(std::vector<FileRecord> files) {
+    const std::lock_guard lock(mutex_);
+    std::vector<FileRecord> all;
+    for (FileRecord& file : files) {
+      const auto archive = is_zip(file.path);
+      if (!archive || !*archive) {
+        all.push_back(std::move(file));
+        continue;
+      }
+      Archive& known = archives_[file.path];
+      if (!file.stamp || known.stamp != file.stamp) {
+        auto folder = TemporaryFolder::make();
+        if (!folder) return folder.error();
+        auto members = unpack_archive(file, folder->path(), limits_);
+        if (!members) {
+          file.facts.failure = members.error().message;
+          known = {};
+          all.push_back(std::move(file));
+          continue;
+        }
+        known = {file.stamp, std::move(*folder), std::move(*members)};
+      }
+      all.insert(all.end(), known.members.begin(), known.members.end());
+    }
+    return all;
+  }
+
   Result<std::shared_ptr<const FileScan>> scan(const FileRecord& file, bool with_footprints,
                                                const RunContext& context) {
     {
@@ -70,9 +131,16 @@ class ScannedFiles final : public Catalogue {
     return std::shared_ptr<const FileScan>(kept);
   }
 
+  struct Archive {
+    std::optional<FileStamp> stamp{};
+    TemporaryFolder folder{};
+    std::vector<FileRecord> members{};
+  };
+
   std::vector<fs::path> paths_;
   ReadLimits limits_;
   std::mutex mutex_{};
+  std::map<fs::path, Archive> archives_{};
   std::map<std::pair<fs::path, std::string>, std::shared_ptr<const FileScan>> scans_{};
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <system_error>
 
+#include "core/source/zip.h"
+
 namespace citymesh::source {
 namespace {
 
@@ -47,6 +49,20 @@ Result<std::vector<FileRecord>> list_files(const std::vector<fs::path>& paths) {
     if (error) return path_error(path, error);
     std::sort(found.begin(), found.end());
     for (const fs::path& file : found) files.push_back(record_of(file, true));
+  }
+  return files;
+}
+
+Result<std::vector<FileRecord>> unpack_archive(const FileRecord& archive, const fs::path& folder,
+                                               const ReadLimits& limits) {
+  auto members = unpack_zip(archive.path, folder, limits);
+  if (!members) return members.error();
+  std::vector<FileRecord> files;
+  for (const ZipMember& member : *members) {
+    FileRecord& file = files.emplace_back(archive);
+    file.text = member.path;
+    file.name = archive.name + "/" + member.name;
+    file.found_in_folder = true;
   }
   return files;
 }

@@ -181,6 +181,10 @@ FileRecord plain_file(const std::filesystem::path& path) {
 Result<FileScan> scan_file(FileRecord file, const ReadLimits& limits, bool with_footprints,
                            const std::stop_token& stop) {
   FileScan scan{std::move(file)};
+  if (!scan.facts.failure.empty()) {  // known before it is opened
+    sum_up(scan);
+    return scan;
+  }
   const auto format = detect_format(scan.text, scan.name, limits);
   if (!format) {
     scan.facts.failure = format.error().message;

@@ -9,6 +9,8 @@
 #include <memory>
 
 #include "core/source/byte_reader.h"
+#include "core/source/listing.h"
+#include "core/source/zip.h"
 
 namespace citymesh::catalogue {
 namespace {
@@ -60,13 +62,17 @@ Result<std::string> content_hash(const fs::path& path) {
 
 Result<std::vector<FileRecord>> unpack(const FileRecord& file, const fs::path& folder,
                                        const ReadLimits& limits) {
-  const auto is_packed = is_gzip(file.path);
-  if (!is_packed || !*is_packed) return std::vector{file};
+  const auto archive = is_zip(file.path);
+  if (!archive) return archive.error();
+  const auto packed = is_gzip(file.path);
+  if (!packed) return packed.error();
+  if (!*archive && !*packed) return std::vector{file};
 
   std::error_code error;
   fs::remove_all(folder, error);
   fs::create_directories(folder, error);
   if (error) return cannot("make", folder);
+  if (*archive) return unpack_archive(file, folder, limits);
   FileRecord unpacked = file;
   unpacked.text = folder / "text";
   if (auto done = unpack_gzip(file.path, unpacked.text, limits); !done) return done.error();
