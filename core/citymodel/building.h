@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -117,14 +118,13 @@ struct Building {
   std::vector<Building> parts{};
   std::vector<Building> installations{};  ///< outer ones, whether they will be used or not
   std::vector<Issue> source_issues{};  ///< what the reader found: dangling xlinks, unreadable rings
-  std::uint32_t skipped_installations = 0;  ///< counted, not read
-  std::uint32_t skipped_ade_elements = 0;
+  std::map<std::string, std::uint32_t> skipped_ade_elements{};  ///< of extensions, by name
 };
 
 /// Numeric value of an attribute (also of text such as "12.5"), if it has one.
 std::optional<double> number_attribute(const Attributes& attributes, std::string_view name);
 
-/// Extent of all geometries of the building and its parts.
+/// Extent of all geometries of the building and its parts, without installations.
 Box3 extent(const Building& building);
 
 }  // namespace citymesh

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/citymodel/building.h"
 #include "core/citymodel/crs.h"
 #include "core/citymodel/issue.h"
 #include "core/geometry/point.h"
@@ -16,6 +17,7 @@ namespace citymesh {
 struct PartReport {
   std::string gml_id{};
   std::string name{};
+  ObjectKind kind = ObjectKind::Building;
   std::string outcome{};  ///< delivered, merged, dropped
   std::string merged_into{};
   std::string reason{};  ///< set when dropped
@@ -34,7 +36,7 @@ struct PartReport {
 };
 
 struct BuildingReport : PartReport {
-  std::vector<PartReport> parts{};  ///< bodies of the parts; empty where the building has none
+  std::vector<PartReport> parts{};  ///< its parts and the installations that were kept
 };
 
 struct Counts {

@@ -249,9 +249,7 @@ Result<Inputs> read_inputs(std::string_view canonical_json) {
   if (given.value("unite_neighbours", false))
     return fail(ErrorCode::Unimplemented,
                 "input `unite_neighbours` is true: uniting is not built, expected false");
-  if (given.value("installations", "drop") == "keep")
-    return fail(ErrorCode::Unimplemented,
-                "input `installations` is \"keep\": not built, expected \"drop\"");
+  inputs.keep_installations = given.value("installations", "drop") == "keep";
   return inputs;
 }
 

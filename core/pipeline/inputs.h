@@ -17,6 +17,7 @@ struct Inputs {
   std::vector<Lod> lod{};
   std::vector<std::string> formats{};
   bool block_on_failure = true;
+  bool keep_installations = false;
   Patches patches = Patches::ByObject;
   double snap_tolerance_m = 0.001;
   double planarity_tolerance_m = 0.01;

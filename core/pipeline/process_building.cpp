@@ -126,8 +126,10 @@ struct ProcessedPart {
 ProcessedPart process_part(const Building& building, const std::string& name, const Inputs& inputs,
                            const std::vector<OpenFormat>& formats, const RunContext& context) {
   RoundTripGate gate(formats);
+  // A block stands on the ground: no stand-in for a balcony or a chimney.
+  const bool installation = building.kind == ObjectKind::BuildingInstallation;
   const HealOptions options{inputs.snap_tolerance_m, inputs.planarity_tolerance_m,
-                            inputs.max_displacement_m, inputs.block_on_failure};
+                            inputs.max_displacement_m, inputs.block_on_failure && !installation};
   Healed healed = heal(building, inputs.lod, options, std::ref(gate), context);
 
   ProcessedPart processed;
@@ -135,6 +137,7 @@ ProcessedPart process_part(const Building& building, const std::string& name, co
   PartReport& report = processed.report;
   report.gml_id = building.gml_id;
   report.name = name;
+  report.kind = building.kind;
   report.outcome = healed.rung.empty() ? "dropped" : "delivered";
   report.reason = std::move(healed.reason);
   report.lod = healed.rung.empty() && healed.issues.empty() ? "" : to_string(healed.lod);
@@ -182,10 +185,23 @@ void add_up(BuildingReport& report, const PartReport& part) {
 
 }  // namespace
 
+std::vector<const Building*> members_of(const Building& building, const Inputs& inputs) {
+  std::vector<const Building*> members;
+  const auto add = [&](const std::vector<Building>& all) {
+    for (const Building& member : all) members.push_back(&member);
+  };
+  add(building.parts);
+  if (!inputs.keep_installations) return members;
+  add(building.installations);
+  for (const Building& part : building.parts) add(part.installations);
+  return members;
+}
+
 ProcessedBuilding process_building(const NamedBuilding& named, const Inputs& inputs,
                                    const std::vector<OpenFormat>& formats,
                                    const RunContext& context) {
   const Building& building = named.building;
+  const std::vector<const Building*> members = members_of(building, inputs);
   ProcessedBuilding processed;
   BuildingReport& report = processed.report;
   report.gml_id = building.gml_id;
@@ -206,10 +222,11 @@ ProcessedBuilding process_building(const NamedBuilding& named, const Inputs& inp
     }
   };
   if (named.duplicate) {
-    for (std::size_t i = 0; i < building.parts.size(); ++i) {
+    for (std::size_t i = 0; i < members.size(); ++i) {
       report.parts.push_back({});
-      report.parts.back().gml_id = building.parts[i].gml_id;
+      report.parts.back().gml_id = members[i]->gml_id;
       report.parts.back().name = named.part_names[i];
+      report.parts.back().kind = members[i]->kind;
     }
     drop("duplicate_id");
     return processed;
@@ -232,15 +249,15 @@ ProcessedBuilding process_building(const NamedBuilding& named, const Inputs& inp
     report.issues_before = building.source_issues;
   }
   report.outcome = "delivered";
-  for (std::size_t i = 0; i < building.parts.size(); ++i) {
-    ProcessedPart part =
-        process_part(building.parts[i], named.part_names[i], inputs, formats, context);
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    ProcessedPart part = process_part(*members[i], named.part_names[i], inputs, formats, context);
     if (part.refused) processed.refused = part.refused;
+    const bool installation = members[i]->kind == ObjectKind::BuildingInstallation;
     if (part.body) {
       add_up(report, part.report);
       bodies.push_back(std::move(*part.body));
-      any_geometry = true;
-    } else if (first_reason.empty()) {
+      any_geometry = any_geometry || !installation;
+    } else if (first_reason.empty() && !installation) {
       first_reason = part.report.reason;
     }
     report.parts.push_back(std::move(part.report));
@@ -260,6 +277,7 @@ BuildingReport validate_building(const NamedBuilding& named, const Inputs& input
     PartReport report;
     report.gml_id = building.gml_id;
     report.name = name;
+    report.kind = building.kind;
     report.outcome = "delivered";
     report.issues_before = building.source_issues;
     const std::vector<const Geometry*> geometries = choose_geometries(building, inputs.lod);

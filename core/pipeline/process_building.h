@@ -24,8 +24,8 @@ struct OpenFormat {
 struct NamedBuilding {
   Building building{};
   std::string name{};
-  std::vector<std::string> part_names{};
-  bool duplicate = false;  ///< its id was seen before
+  std::vector<std::string> part_names{};  ///< of members_of()
+  bool duplicate = false;                 ///< its id was seen before
 };
 
 struct ProcessedBuilding {
@@ -34,8 +34,13 @@ struct ProcessedBuilding {
   std::optional<Error> refused{};  ///< a format that cannot hold the building: the end of the run
 };
 
+/// What becomes bodies of their own besides the building: its parts, then, when they are kept, its
+/// installations and those of its parts.
+std::vector<const Building*> members_of(const Building& building, const Inputs& inputs);
+
 /// Heals one building with its parts; every body passes the gates on its write-and-parse round trip
-/// in every open format. Touches nothing but its arguments: buildings run side by side.
+/// in every open format. An installation that cannot be healed is dropped alone. Touches nothing
+/// but its arguments: buildings run side by side.
 ProcessedBuilding process_building(const NamedBuilding& named, const Inputs& inputs,
                                    const std::vector<OpenFormat>& formats,
                                    const RunContext& context);

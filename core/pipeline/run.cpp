@@ -31,7 +31,8 @@ class Totals {
  public:
   void add(const BuildingReport& building, const BuildingBodies* bodies) {
     count(report_.counts, building.outcome);
-    for (const PartReport& part : building.parts) count(report_.part_counts, part.outcome);
+    for (const PartReport& part : building.parts)
+      if (part.kind == ObjectKind::BuildingPart) count(report_.part_counts, part.outcome);
     if (building.outcome == "delivered") {
       if (!building.rung.empty()) ++rungs_[building.rung];
     } else {
@@ -43,9 +44,10 @@ class Totals {
 
   /// What was left out of a building by choice.
   void add_skipped(const Building& building) {
-    installations_ += building.skipped_installations;
-    ade_elements_ += building.skipped_ade_elements;
+    if (!keep_installations_) installations_ += building.installations.size();
+    for (const auto& [name, count] : building.skipped_ade_elements) ade_elements_[name] += count;
     for (const Building& part : building.parts) add_skipped(part);
+    for (const Building& installation : building.installations) add_skipped(installation);
   }
 
   void add(const TriangleMesh& mesh) {
@@ -75,9 +77,16 @@ class Totals {
     if (installations_ > 0)
       report_.warnings.push_back(
           fmt::format("{} building installations were left out", installations_));
-    if (ade_elements_ > 0)
+    if (!ade_elements_.empty()) {
+      std::uint64_t elements = 0;
+      std::string names;
+      for (const auto& [name, count] : ade_elements_) {
+        elements += count;
+        names += fmt::format("{}{} {}", names.empty() ? "" : ", ", name, count);
+      }
       report_.warnings.push_back(
-          fmt::format("{} elements of extensions (ADE) were skipped", ade_elements_));
+          fmt::format("{} elements of extensions (ADE) were skipped: {}", elements, names));
+    }
     report_.rungs.assign(rungs_.begin(), rungs_.end());
     report_.drop_reasons.assign(reasons_.begin(), reasons_.end());
     if (report_.triangles > 0) {
@@ -88,6 +97,7 @@ class Totals {
   }
 
   RunReport& report() { return report_; }
+  void keep_installations() { keep_installations_ = true; }
 
  private:
   static void count(Counts& counts, const std::string& outcome) {
@@ -99,7 +109,9 @@ class Totals {
 
   RunReport report_;
   Contacts contacts_;
-  std::uint64_t installations_ = 0, ade_elements_ = 0;
+  std::uint64_t installations_ = 0;
+  std::map<std::string, std::uint64_t> ade_elements_;
+  bool keep_installations_ = false;
   std::map<std::string, std::uint64_t> rungs_, reasons_;
   double min_edge_m_ = std::numeric_limits<double>::infinity();
   double max_cosine_ = -1;
@@ -182,6 +194,7 @@ class Run {
     auto inputs = read_inputs(canonical);
     if (!inputs) return inputs.error();
     inputs_ = std::move(*inputs);
+    if (inputs_.keep_installations) totals_.keep_installations();
 
     auto selection = source_.select(inputs_.query, context_);
     if (!selection) return selection.error();
@@ -252,8 +265,8 @@ class Run {
     NamedBuilding named;
     named.duplicate = !seen_.insert(building.gml_id).second;
     named.name = names_->take(building.gml_id);
-    for (const Building& part : building.parts)
-      named.part_names.push_back(names_->take(part.gml_id));
+    for (const Building* member : members_of(building, inputs_))
+      named.part_names.push_back(names_->take(member->gml_id));
     named.building = std::move(building);
     return named;
   }

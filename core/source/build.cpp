@@ -105,7 +105,10 @@ Geometry BuildingMaker::make_geometry(const Feature& feature, const RawShape& sh
     polygon_of_use[u] = static_cast<std::uint32_t>(geometry.polygons.size());
     Polygon& polygon = geometry.polygons.emplace_back();
     polygon.gml_id = raw.gml_id;
-    if (raw.object == object) polygon.surface = raw.surface;
+    if (shape.uses[u].surface >= 0)
+      polygon.surface = shape.uses[u].surface;
+    else if (raw.object == object)
+      polygon.surface = raw.surface;
     polygon.rings.resize(raw.ring_count);
     for (std::uint32_t r = 0; r < raw.ring_count; ++r) {
       const RawRing run = feature.rings[raw.first_ring + r];
@@ -148,26 +151,33 @@ Building BuildingMaker::make(Feature& feature) {
     RawObject& object = feature.objects[i];
     Building& building = buildings[i];
     building.gml_id = object.gml_id;
-    if (object.parent >= 0) building.kind = ObjectKind::BuildingPart;
+    building.kind = object.kind;
     if (object.parent >= 0)
       building.parent = feature.objects[static_cast<std::size_t>(object.parent)].gml_id;
     building.surfaces = std::move(object.surfaces);
     building.attributes = std::move(object.attributes);
     building.source_issues = std::move(object.issues);
-    building.skipped_installations = object.skipped_installations;
-    building.skipped_ade_elements = object.skipped_ade_elements;
+    building.addresses = std::move(object.addresses);
+    building.skipped_ade_elements = std::move(object.skipped_ade_elements);
     for (const RawShape& shape : object.shapes) {
       Geometry geometry = make_geometry(feature, shape, static_cast<std::int32_t>(i));
       if (!geometry.polygons.empty()) building.geometries.push_back(std::move(geometry));
     }
   }
   // Parents stand before their parts: from the back every part is complete when it is moved.
+  const auto in_order = [](Building& building) {
+    std::reverse(building.parts.begin(), building.parts.end());
+    std::reverse(building.installations.begin(), building.installations.end());
+  };
   for (std::size_t i = buildings.size() - 1; i > 0; --i) {
-    std::reverse(buildings[i].parts.begin(), buildings[i].parts.end());
-    buildings[static_cast<std::size_t>(feature.objects[i].parent)].parts.push_back(
-        std::move(buildings[i]));
+    if (feature.objects[i].inside) continue;
+    in_order(buildings[i]);
+    Building& parent = buildings[static_cast<std::size_t>(feature.objects[i].parent)];
+    auto& members =
+        buildings[i].kind == ObjectKind::BuildingInstallation ? parent.installations : parent.parts;
+    members.push_back(std::move(buildings[i]));
   }
-  std::reverse(buildings.front().parts.begin(), buildings.front().parts.end());
+  in_order(buildings.front());
   return std::move(buildings.front());
 }
 

@@ -6,6 +6,7 @@
 #include "core/base/text.h"
 #include "core/citymodel/issue.h"
 #include "core/source/citygml_parser.h"
+#include "core/source/positions.h"
 
 namespace citymesh::source {
 
@@ -41,6 +42,8 @@ void CityGmlParser::on_start(const XmlName& name, const XmlAttributes& attribute
     case Ctx::GenericName:
     case Ctx::GenericValue:
     case Ctx::HeightValue:
+    case Ctx::Matrix:
+    case Ctx::ReferencePosition:
       return skip();
     case Ctx::Ring:
     case Ctx::RingInner:
@@ -52,23 +55,34 @@ void CityGmlParser::on_start(const XmlName& name, const XmlAttributes& attribute
     case Ctx::GeometryProperty:
       if (!start_geometry(element, attributes)) skip();
       return;
+    case Ctx::RelativeProperty:
+      if (!start_geometry(element, attributes)) skip();
+      return;
     case Ctx::Surface:
-      if (element.tag == Tag::GeometryProperty) return start_geometry_property(element, attributes);
-      if (element.tag == Tag::OpeningProperty) {
-        push(Ctx::OpeningProperty, element);
-        return;
-      }
-      return element.ns == Ns::Foreign ? skip_foreign() : skip();
+      return start_in_surface(element, name.local, attributes);
     case Ctx::BoundaryProperty:
     case Ctx::OpeningProperty:
+    case Ctx::FillingProperty:
       if (element.tag == Tag::BoundarySurface) return start_surface(element, attributes);
-      return element.ns == Ns::Foreign ? skip_foreign() : skip();
+      return element.ns == Ns::Foreign ? skip_foreign(name.local) : skip();
+    case Ctx::ImplicitProperty:
+    case Ctx::Implicit:
+    case Ctx::ReferencePoint:
+      return start_in_implicit(element, attributes);
+    case Ctx::AddressProperty:
+    case Ctx::Address:
+    case Ctx::Xal:
+      return start_in_address(element, name.local);
     case Ctx::Object:
       return start_in_object(element, name.local, attributes);
     case Ctx::PartProperty:
       if (element.tag == Tag::BuildingPart || element.tag == Tag::Building)
-        return start_object(element, top.object, attributes);
-      return skip();
+        return start_object(element, top.object, ObjectKind::BuildingPart, attributes);
+      return element.ns == Ns::Foreign ? skip_foreign(name.local) : skip();
+    case Ctx::InstallationProperty:
+      if (element.tag == Tag::Installation)
+        return start_object(element, top.object, ObjectKind::BuildingInstallation, attributes);
+      return element.ns == Ns::Foreign ? skip_foreign(name.local) : skip();
     case Ctx::Attribute:
       top.complex = true;
       return skip();
@@ -93,10 +107,14 @@ void CityGmlParser::on_start(const XmlName& name, const XmlAttributes& attribute
       push(Ctx::Harvest, element);
       return;
     case Ctx::Member:
-      return start_in_member(element, attributes);
+      return start_in_member(element, name.local, attributes);
     case Ctx::Model:
       return start_in_model(element);
     case Ctx::Document:
+      if (element.tag == Tag::Building && element.ns == Ns::Building) {
+        facts_.format = std::string("CityGML ") + namespace_of(name.uri).citygml_major + ".0";
+        return start_object(element, -1, ObjectKind::Building, attributes);
+      }
       return start_root(element, name);
   }
 }
@@ -126,7 +144,8 @@ void CityGmlParser::start_in_model(const ElementName& element) {
   }
 }
 
-void CityGmlParser::start_in_member(const ElementName& element, const XmlAttributes& attributes) {
+void CityGmlParser::start_in_member(const ElementName& element, std::string_view name,
+                                    const XmlAttributes& attributes) {
   switch (element.tag) {
     case Tag::FeatureCollection:
     case Tag::CityModel:
@@ -134,9 +153,18 @@ void CityGmlParser::start_in_member(const ElementName& element, const XmlAttribu
       return;
     case Tag::Building:
     case Tag::BuildingPart:
-      return start_object(element, -1, attributes);
+      return start_object(
+          element, -1,
+          element.tag == Tag::Building ? ObjectKind::Building : ObjectKind::BuildingPart,
+          attributes);
     default:
-      if (!wanted_) return skip();
+      if (!wanted_) {
+        if (element.ns == Ns::Foreign) {
+          ++facts_.skipped_objects;
+          facts_.count_skipped(name);
+        }
+        return skip();
+      }
       begin_feature();
       push(Ctx::OtherFeature, element).object = -1;
   }
@@ -183,16 +211,18 @@ std::uint32_t CityGmlParser::envelope(const Frame& frame) {
   return static_cast<std::uint32_t>(number);
 }
 
-void CityGmlParser::start_object(const ElementName& element, std::int32_t parent,
+void CityGmlParser::start_object(const ElementName& element, std::int32_t parent, ObjectKind kind,
                                  const XmlAttributes& attributes) {
   if (parent < 0) begin_feature();
   object_ = static_cast<std::int32_t>(feature_.objects.size());
   RawObject& object = feature_.objects.emplace_back();
   object.gml_id = attributes.id;
   object.parent = parent;
+  object.kind = kind;
   Frame& frame = push(Ctx::Object, element);
   frame.object = object_;
   frame.surface = -1;
+  frame.surface_node = GeometryTree::kNone;
 }
 
 void CityGmlParser::start_in_object(const ElementName& element, std::string_view name,
@@ -200,25 +230,30 @@ void CityGmlParser::start_in_object(const ElementName& element, std::string_view
   const std::size_t owner = frames_.size() - 1;
   switch (element.tag) {
     case Tag::BoundaryProperty:
-      push(Ctx::BoundaryProperty, element);
       if (!attributes.href.empty())
-        report(issue_code::kUnreadableGeometry,
-               "boundary surface by xlink:href '" + std::string(attributes.href) + "' is not read");
+        tree_.add_surface_reference(attributes.href, frames_.back().object, -1);
+      push(Ctx::BoundaryProperty, element);
       return;
     case Tag::GeometryProperty:
       return start_geometry_property(element, attributes);
     case Tag::PartProperty:
       push(Ctx::PartProperty, element);
-      if (!attributes.href.empty())
-        report(issue_code::kUnreadableGeometry,
-               "building part by xlink:href '" + std::string(attributes.href) + "' is not read");
+      return start_reference("building part", attributes.href);
+    case Tag::InstallationProperty:
+      push(Ctx::InstallationProperty, element);
+      return start_reference("installation", attributes.href);
+    case Tag::ImplicitProperty: {
+      Frame& frame = push(Ctx::ImplicitProperty, element);
+      frame.lod = element.lod;
+      return;
+    }
+    case Tag::AddressProperty:
+      push(Ctx::AddressProperty, element);
+      if (!attributes.href.empty()) facts_.count_skipped(kSharedAddress);
       return;
     case Tag::EnvelopeProperty:
       push(Ctx::EnvelopeProperty, element).owner = owner;
       return;
-    case Tag::Installation:
-      ++feature_.objects[static_cast<std::size_t>(object_)].skipped_installations;
-      [[fallthrough]];
     case Tag::Interior:
       push(Ctx::Harvest, element).object = -1;
       return;
@@ -238,18 +273,61 @@ void CityGmlParser::start_in_object(const ElementName& element, std::string_view
     default:
       return skip();
   }
-  if (element.ns == Ns::Foreign || name.substr(0, 5) == "adeOf") return skip_foreign();
+  if (element.ns == Ns::Foreign || name.substr(0, 5) == "adeOf") return skip_foreign(name);
   if (element.ns == Ns::OtherModule || element.ns == Ns::None) return skip();
   push(Ctx::Attribute, element);
   name_ = name;
   xml_.capture();
 }
 
+void CityGmlParser::start_in_surface(const ElementName& element, std::string_view name,
+                                     const XmlAttributes& attributes) {
+  switch (element.tag) {
+    case Tag::GeometryProperty:
+      return start_geometry_property(element, attributes);
+    case Tag::ImplicitProperty: {
+      Frame& frame = push(Ctx::ImplicitProperty, element);
+      frame.lod = element.lod;
+      return;
+    }
+    case Tag::OpeningProperty:
+      if (!attributes.href.empty())
+        tree_.add_surface_reference(attributes.href, frames_.back().object, frames_.back().surface);
+      push(Ctx::OpeningProperty, element);
+      return;
+    case Tag::FillingProperty:
+      push(Ctx::FillingProperty, element).in_shell = false;
+      return;
+    case Tag::BoundaryProperty:  // of the volume of a window
+      push(Ctx::BoundaryProperty, element);
+      return;
+    default:
+      return element.ns == Ns::Foreign ? skip_foreign(name) : skip();
+  }
+}
+
+// A part or an installation that stands elsewhere.
+void CityGmlParser::start_reference(std::string_view what, std::string_view href) {
+  if (href.empty()) return;
+  report(issue_code::kUnreadableGeometry,
+         std::string(what) + " by xlink:href '" + std::string(href) +
+             "' is not joined to the building, it stays the feature that it is");
+}
+
+void CityGmlParser::skip_foreign(std::string_view name) {
+  if (object_ >= 0)
+    count_name(feature_.objects[static_cast<std::size_t>(object_)].skipped_ade_elements, name);
+  skip();
+}
+
 void CityGmlParser::start_surface(const ElementName& element, const XmlAttributes& attributes) {
   RawObject& object = feature_.objects[static_cast<std::size_t>(frames_.back().object)];
   const std::int32_t outer = frames_.back().surface;
   object.surfaces.push_back({element.surface, std::string(attributes.id), outer});
+  const GeometryTree::NodeId node =
+      tree_.add_boundary_surface(element.surface, frames_.back().surface_node, attributes.id);
   Frame& frame = push(Ctx::Surface, element);
+  frame.surface_node = node;
   frame.surface = static_cast<std::int32_t>(object.surfaces.size() - 1);
 }
 
@@ -268,6 +346,8 @@ void CityGmlParser::on_end() {
       return end_attribute(frame);
     case Ctx::GenericName:
       name_ = trimmed(xml_.end_capture());
+      if (frames_.back().tag == Tag::GenericSet && !generic_sets_.empty())
+        generic_sets_.back() = name_;
       return;
     case Ctx::GenericValue:
       generic_value_ = trimmed(xml_.end_capture());
@@ -276,6 +356,29 @@ void CityGmlParser::on_end() {
       return end_generic(frame);
     case Ctx::HeightValue:
       return end_height(frame);
+    case Ctx::Matrix: {
+      const auto matrix = matrix_from(xml_.end_capture());
+      implicit_.has_matrix = matrix.has_value();
+      if (matrix) implicit_.placement.matrix = *matrix;
+      return;
+    }
+    case Ctx::ReferencePosition: {
+      std::vector<Point3> point;
+      const auto read = append_positions(xml_.end_capture(), 3, point);
+      implicit_.has_reference = read.state == PositionsState::Ok && point.size() == 1;
+      if (!implicit_.has_reference) return;
+      implicit_.placement.reference = point[0];
+      implicit_.placement.srs = frame.srs;
+      return;
+    }
+    case Ctx::Implicit:
+      return end_implicit(frame);
+    case Ctx::Xal:
+      return end_xal(frame);
+    case Ctx::Address:
+      if (frame.object >= 0 && !(address_ == Address{}))
+        feature_.objects[static_cast<std::size_t>(frame.object)].addresses.push_back(address_);
+      return;
     case Ctx::Corner:
       return end_corner(frame);
     case Ctx::Envelope:
@@ -295,6 +398,14 @@ void CityGmlParser::on_end() {
 
 void CityGmlParser::end_object(const Frame& frame) {
   RawObject& object = feature_.objects[static_cast<std::size_t>(frame.object)];
+  if (object.kind == ObjectKind::BuildingInstallation) {
+    // CityGML 3.0 has one property for installations outside and inside.
+    const auto relation = std::find_if(
+        object.attributes.begin(), object.attributes.end(),
+        [](const auto& attribute) { return attribute.first == "relationToConstruction"; });
+    object.inside = relation != object.attributes.end() &&
+                    relation->second == AttributeValue(std::string("inside"));
+  }
   object_ = object.parent;
   if (object_ < 0) end_feature(frame);
 }
@@ -305,7 +416,7 @@ void CityGmlParser::end_feature(const Frame& frame) {
   if (feature_.bytes.begin > 0) feature_.bytes.end = xml_.position();
   if (options_.stop.stop_requested())
     return xml_.stop_with(fail(ErrorCode::Cancelled, "reading was stopped"));
-  if (wanted_) return tree_.collect(feature_, options_, *wanted_, *shared_);
+  if (wanted_) return tree_.collect(feature_, options_, *wanted_, facts_, *shared_);
 
   feature_.srs = frame.srs;
   ++ordinal_;
@@ -324,7 +435,7 @@ void CityGmlParser::end_feature(const Frame& frame) {
                                    std::to_string(options_.limits.max_points_per_building) +
                                    " points"});
   } else {
-    tree_.resolve(feature_, options_, facts_.unresolved);
+    tree_.resolve(feature_, options_, facts_);
   }
   if (auto taken = (*sink_)(feature_); !taken) xml_.stop_with(taken.error());
 }

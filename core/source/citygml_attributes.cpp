@@ -43,15 +43,20 @@ void CityGmlParser::end_attribute(const Frame& frame) {
 }
 
 void CityGmlParser::end_generic(const Frame& frame) {
-  if (frame.tag == Tag::GenericSet || name_.empty()) return;
+  if (frame.tag == Tag::GenericSet) {
+    generic_sets_.pop_back();
+    return;
+  }
+  if (name_.empty()) return;
+  const std::string name = generic_name();
   if (frame.tag == Tag::GenericWhole) {
     if (const auto whole = number_from<std::int64_t>(generic_value_))
-      return add_attribute(frame.object, name_, *whole);
+      return add_attribute(frame.object, name, *whole);
   } else if (frame.tag == Tag::GenericNumber) {
     if (const auto value = number_from<double>(generic_value_))
-      return add_attribute(frame.object, name_, *value);
+      return add_attribute(frame.object, name, *value);
   }
-  add_attribute(frame.object, name_, generic_value_);
+  add_attribute(frame.object, name, generic_value_);
 }
 
 void CityGmlParser::end_height(const Frame& frame) {
@@ -69,16 +74,29 @@ void CityGmlParser::start_generic(const ElementName& element, const XmlAttribute
     case Tag::GenericNumber:
       name_ = attributes.name;
       generic_value_.clear();
-      [[fallthrough]];
+      push(Ctx::Generic, element);
+      return;
     case Tag::GenericSet:
+      generic_sets_.emplace_back(attributes.name);
       push(Ctx::Generic, element);
       return;
     case Tag::GenericProperty:
       push(Ctx::GenericProperty, element);
       return;
+    case Tag::Name:
+      push(Ctx::GenericName, element);
+      return xml_.capture();
     default:
       return skip();
   }
+}
+
+// Attributes of a set carry its name: "set.name".
+std::string CityGmlParser::generic_name() const {
+  std::string name;
+  for (const std::string& set : generic_sets_)
+    if (!set.empty()) name += set + ".";
+  return name + name_;
 }
 
 void CityGmlParser::add_attribute(std::int32_t object, std::string_view key, AttributeValue value) {

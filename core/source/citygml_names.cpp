@@ -23,7 +23,15 @@ constexpr std::array kCoreNames{
     TagName{"relatedTo", Tag::Skipped},
     TagName{"appearance", Tag::Skipped},
     TagName{"appearanceMember", Tag::Skipped},
-    TagName{"address", Tag::Skipped},
+    TagName{"address", Tag::AddressProperty},
+    TagName{"Address", Tag::Address},
+    TagName{"xalAddress", Tag::XalProperty},
+    TagName{"ImplicitGeometry", Tag::Implicit},
+    TagName{"transformationMatrix", Tag::Matrix},
+    TagName{"relativeGMLGeometry", Tag::RelativeGeometry},
+    TagName{"relativeGeometry", Tag::RelativeGeometry},
+    TagName{"referencePoint", Tag::ReferencePoint},
+    TagName{"featureMember", Tag::MemberProperty},
 };
 
 constexpr std::array kBuildingNames{
@@ -32,8 +40,9 @@ constexpr std::array kBuildingNames{
     TagName{"boundedBy", Tag::BoundaryProperty},
     TagName{"consistsOfBuildingPart", Tag::PartProperty},
     TagName{"buildingPart", Tag::PartProperty},
-    TagName{"outerBuildingInstallation", Tag::Installation},
-    TagName{"buildingInstallation", Tag::Installation},
+    TagName{"outerBuildingInstallation", Tag::InstallationProperty},
+    TagName{"buildingInstallation", Tag::InstallationProperty},
+    TagName{"BuildingInstallation", Tag::Installation},
     TagName{"interiorBuildingInstallation", Tag::Interior},
     TagName{"interiorRoom", Tag::Interior},
     TagName{"buildingRoom", Tag::Interior},
@@ -41,11 +50,12 @@ constexpr std::array kBuildingNames{
     TagName{"buildingSubdivision", Tag::Interior},
     TagName{"buildingConstructiveElement", Tag::Interior},
     TagName{"opening", Tag::OpeningProperty},
-    TagName{"address", Tag::Skipped},
+    TagName{"address", Tag::AddressProperty},
 };
 
 constexpr std::array kConstructionNames{
     TagName{"fillingSurface", Tag::OpeningProperty},
+    TagName{"filling", Tag::FillingProperty},
     TagName{"height", Tag::HeightProperty},
     TagName{"Height", Tag::Height},
     TagName{"value", Tag::Value},
@@ -74,8 +84,8 @@ constexpr std::array kGenericNames{
 
 constexpr std::array kGmlNames{
     TagName{"posList", Tag::Coordinates},
-    TagName{"pos", Tag::Coordinates},
-    TagName{"coordinates", Tag::Coordinates},
+    TagName{"pos", Tag::Position},
+    TagName{"coordinates", Tag::Tuples},
     TagName{"Polygon", Tag::Polygon},
     TagName{"exterior", Tag::Exterior},
     TagName{"interior", Tag::InteriorBoundary},
@@ -124,6 +134,7 @@ constexpr std::array kGmlNames{
 constexpr std::array kWfsNames{
     TagName{"FeatureCollection", Tag::FeatureCollection},
     TagName{"member", Tag::MemberProperty},
+    TagName{"boundedBy", Tag::EnvelopeProperty},
 };
 
 template <std::size_t N>
@@ -144,6 +155,7 @@ std::optional<ElementName> lod_property(Ns ns, std::string_view name) {
   if (kind == "Solid" || kind == "MultiSurface" || kind == "Surface" || kind == "Geometry" ||
       kind == "FootPrint" || kind == "RoofEdge")
     element.tag = Tag::GeometryProperty;
+  if (kind == "ImplicitRepresentation") element.tag = Tag::ImplicitProperty;
   element.footprint = element.lod == 0;
   return element;
 }

@@ -35,25 +35,35 @@ enum class Tag : std::uint8_t {
   MemberProperty,
   Building,
   BuildingPart,
-  EnvelopeProperty,  ///< gml:boundedBy
-  BoundaryProperty,  ///< bldg:boundedBy, core:boundary
-  PartProperty,      ///< consistsOfBuildingPart, buildingPart
-  Installation,      ///< outer installations
+  EnvelopeProperty,      ///< gml:boundedBy
+  BoundaryProperty,      ///< bldg:boundedBy, core:boundary
+  PartProperty,          ///< consistsOfBuildingPart, buildingPart
+  InstallationProperty,  ///< outer installations
+  Installation,
   Interior,          ///< rooms, furniture, interior installations, storeys
   OpeningProperty,   ///< opening, fillingSurface
+  FillingProperty,   ///< filling: the volume of a window or door
   BoundarySurface,   ///< `surface` tells which
   GeometryProperty,  ///< lodNSolid, lodNMultiSurface, lod0FootPrint …
-  UnusedGeometry,    ///< curves, terrain intersection, implicit geometry
-  GenericProperty,   ///< genericAttribute of 3.0
-  GenericText,       ///< stringAttribute, dateAttribute, uriAttribute
-  GenericWhole,      ///< intAttribute
-  GenericNumber,     ///< doubleAttribute, measureAttribute
-  GenericSet,        ///< genericAttributeSet
+  ImplicitProperty,  ///< lodNImplicitRepresentation
+  Implicit,
+  Matrix,
+  RelativeGeometry,
+  ReferencePoint,
+  UnusedGeometry,   ///< curves, terrain intersection
+  GenericProperty,  ///< genericAttribute of 3.0
+  GenericText,      ///< stringAttribute, dateAttribute, uriAttribute
+  GenericWhole,     ///< intAttribute
+  GenericNumber,    ///< doubleAttribute, measureAttribute
+  GenericSet,       ///< genericAttributeSet
   Name,
   Value,
+  AddressProperty,
+  Address,
+  XalProperty,
   HeightProperty,  ///< con:height
   Height,
-  Skipped,  ///< address, appearance, references: known and of no use here
+  Skipped,  ///< appearance, references: known and of no use here
   Envelope,
   LowerCorner,
   UpperCorner,
@@ -70,7 +80,9 @@ enum class Tag : std::uint8_t {
   GeometryMember,  ///< surfaceMember, solidMember, baseSurface, patches …
   Exterior,
   InteriorBoundary,
-  Coordinates,  ///< posList, pos, coordinates
+  Coordinates,  ///< posList
+  Position,     ///< pos
+  Tuples,       ///< coordinates
 };
 
 struct ElementName {

@@ -11,6 +11,7 @@
 
 #include "core/citymodel/issue.h"
 #include "core/source/json_text.h"
+#include "core/source/placement.h"
 #include "core/source/positions.h"
 
 namespace citymesh::source {
@@ -42,6 +43,7 @@ struct Header {
   std::array<double, 3> scale{1, 1, 1};
   std::array<double, 3> translate{0, 0, 0};
   std::uint32_t srs = 0;
+  Feature templates{};  ///< an object for each geometry template
 
   Point3 place(double x, double y, double z) const {
     return {x * scale[0] + translate[0], y * scale[1] + translate[1], z * scale[2] + translate[2]};
@@ -94,8 +96,13 @@ std::string read_transform(std::optional<dom::element> element, const DocumentFa
 void read_metadata(dom::element element, DocumentFacts& facts, Header& header) {
   dom::object metadata;
   if (element.get(metadata) != simdjson::SUCCESS) return;
+  dom::object old_crs;
+  std::int64_t old_code = 0;
   if (const auto name = text_member(metadata, "referenceSystem"))
     header.srs = facts.intern_srs(*name);
+  else if (metadata["crs"].get(old_crs) == simdjson::SUCCESS &&
+           old_crs["epsg"].get(old_code) == simdjson::SUCCESS && old_code > 0)
+    header.srs = facts.intern_srs("EPSG:" + std::to_string(old_code));
   dom::array extent;
   if (metadata["geographicalExtent"].get(extent) != simdjson::SUCCESS || extent.size() != 6) return;
   std::array<double, 6> values{};
@@ -157,6 +164,66 @@ Attributes attributes_of(dom::object object) {
   return attributes;
 }
 
+std::string text_of(dom::element value) {
+  if (value.is_string()) return std::string(std::string_view(value));
+  if (value.is_number()) return simdjson::minify(value);
+  return {};
+}
+
+// Of an address; the names of CityJSON 1.x and 2.0 and of what programs write, in small letters.
+struct AddressName {
+  std::string_view name;
+  std::string Address::*field;
+};
+constexpr std::array kAddressNames{
+    AddressName{"country", &Address::country},
+    AddressName{"countryname", &Address::country},
+    AddressName{"administrativearea", &Address::state},
+    AddressName{"administrativeareaname", &Address::state},
+    AddressName{"state", &Address::state},
+    AddressName{"locality", &Address::city},
+    AddressName{"localityname", &Address::city},
+    AddressName{"city", &Address::city},
+    AddressName{"thoroughfarename", &Address::street},
+    AddressName{"street", &Address::street},
+    AddressName{"thoroughfarenumber", &Address::house_number},
+    AddressName{"housenumber", &Address::house_number},
+    AddressName{"postalcode", &Address::zip_code},
+    AddressName{"postcode", &Address::zip_code},
+    AddressName{"zipcode", &Address::zip_code},
+    AddressName{"postbox", &Address::po_box},
+    AddressName{"pobox", &Address::po_box},
+};
+
+void add_address(dom::object object, std::vector<Address>& addresses) {
+  Address address;
+  for (const auto& [key, value] : object) {
+    std::string name;
+    for (const char c : key)
+      if (c != '_') name += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    for (const AddressName& known : kAddressNames)
+      if (known.name == name && (address.*known.field).empty())
+        address.*known.field = text_of(value);
+  }
+  if (!(address == Address{})) addresses.push_back(std::move(address));
+}
+
+// An object in 1.x, a list of them in 2.0.
+std::vector<Address> addresses_of(dom::object city_object) {
+  std::vector<Address> addresses;
+  dom::element element;
+  if (city_object["address"].get(element) != simdjson::SUCCESS) return addresses;
+  dom::object object;
+  dom::array list;
+  if (element.get(object) == simdjson::SUCCESS) {
+    add_address(object, addresses);
+  } else if (element.get(list) == simdjson::SUCCESS) {
+    for (const dom::element entry : list)
+      if (entry.get(object) == simdjson::SUCCESS) add_address(object, addresses);
+  }
+  return addresses;
+}
+
 /// Appends the geometries of one city object to a feature.
 class GeometryBuilder {
  public:
@@ -168,6 +235,16 @@ class GeometryBuilder {
         vertices_(vertices),
         srs_(srs),
         max_points_(max_points) {}
+
+  void use_templates(const Feature& templates, std::string_view srs_name) {
+    templates_ = &templates;
+    srs_name_ = srs_name;
+  }
+
+  void add_one(dom::object geometry) {
+    place_ = "template";
+    add(geometry);
+  }
 
   void add_all(dom::object city_object) {
     dom::element element;
@@ -199,6 +276,7 @@ class GeometryBuilder {
     const auto type = text_member(geometry, "type");
     if (!type) return unreadable("member 'type' is missing or no text");
     if (*type == "MultiPoint" || *type == "MultiLineString") return;  // no surfaces
+    if (*type == "GeometryInstance") return add_instance(geometry);
     RawShape shape;
     int nesting = 0;  // lists between boundaries and surfaces
     if (*type == "MultiSurface") {
@@ -246,6 +324,51 @@ class GeometryBuilder {
     if (!shape.uses.empty()) object_.shapes.push_back(std::move(shape));
   }
 
+  void add_instance(dom::object geometry) {
+    std::uint64_t number = 0;
+    if (geometry["template"].get(number) != simdjson::SUCCESS || !templates_ ||
+        number >= templates_->objects.size())
+      return unreadable("member 'template' names none of the geometry templates");
+    const RawObject& model = templates_->objects[static_cast<std::size_t>(number)];
+    if (model.shapes.empty())
+      return unreadable("geometry template " + std::to_string(number) + " is not readable");
+    Placement placement{.srs = srs_};
+    dom::array anchors, matrix;
+    std::uint64_t anchor = 0;
+    if (geometry["boundaries"].get(anchors) != simdjson::SUCCESS || anchors.size() != 1 ||
+        anchors.at(0).get(anchor) != simdjson::SUCCESS || anchor >= vertices_.size())
+      return unreadable("'boundaries' of an instance must be the number of one vertex");
+    placement.reference = vertices_[static_cast<std::size_t>(anchor)];
+    if (geometry["transformationMatrix"].get(matrix) != simdjson::SUCCESS || matrix.size() != 16)
+      return unreadable("'transformationMatrix' must have 16 numbers");
+    std::size_t at = 0;
+    for (const dom::element value : matrix) {
+      const auto entry = finite_number(value);
+      if (!entry) return unreadable("'transformationMatrix' must have 16 numbers");
+      placement.matrix[at++] = *entry;
+    }
+    if (placement.matrix[15] == 0)
+      return unreadable("the last number of 'transformationMatrix' is 0");
+
+    const auto first = static_cast<std::int32_t>(object_.surfaces.size());
+    for (Surface surface : model.surfaces) {
+      if (surface.parent >= 0) surface.parent += first;
+      object_.surfaces.push_back(std::move(surface));
+    }
+    for (const RawShape& template_shape : model.shapes) {
+      RawShape shape = template_shape;
+      for (PolygonUse& use : shape.uses) {
+        use = place_copy(*templates_, use, placement, srs_name_, feature_);
+        RawPolygon& polygon = feature_.polygons[use.polygon];
+        polygon.object = object_index_;
+        if (polygon.surface >= 0) polygon.surface += first;
+        if (feature_.points.size() > max_points_) too_large_ = true;
+        if (too_large_) return;
+      }
+      object_.shapes.push_back(std::move(shape));
+    }
+  }
+
   /// The semantic values that stand beside a list of boundaries; missing ones are none.
   struct ParallelValues {
     explicit ParallelValues(const std::optional<dom::element>& list) {
@@ -284,6 +407,21 @@ class GeometryBuilder {
           surface.parent = static_cast<std::int32_t>(first_surface_ + parent);
       }
       object_.surfaces.push_back(std::move(surface));
+    }
+    // Openings may be named by their wall only.
+    std::size_t wall = first_surface_;
+    for (const dom::element element : surfaces) {
+      dom::object semantic;
+      dom::array children;
+      if (element.get(semantic) == simdjson::SUCCESS &&
+          semantic["children"].get(children) == simdjson::SUCCESS)
+        for (const dom::element child : children) {
+          std::uint64_t index = 0;
+          if (child.get(index) != simdjson::SUCCESS || index >= surfaces.size()) continue;
+          Surface& opening = object_.surfaces[first_surface_ + static_cast<std::size_t>(index)];
+          if (opening.parent < 0) opening.parent = static_cast<std::int32_t>(wall);
+        }
+      ++wall;
     }
     dom::element list;
     if (semantics["values"].get(list) == simdjson::SUCCESS) values = list;
@@ -380,30 +518,62 @@ class GeometryBuilder {
   const std::vector<Point3>& vertices_;
   std::uint32_t srs_;
   std::uint64_t max_points_;
+  const Feature* templates_ = nullptr;
+  std::string_view srs_name_{};
   std::string place_{"object"};
   std::size_t number_ = 0;
   std::size_t first_surface_ = 0;
   bool too_large_ = false;
 };
 
+// Each template becomes an object without id; one that is not readable has no shape.
+void read_templates(dom::element element, const DocumentOptions& options, Header& header) {
+  dom::object root;
+  dom::array templates, list;
+  if (element.get(root) != simdjson::SUCCESS ||
+      root["templates"].get(templates) != simdjson::SUCCESS ||
+      root["vertices-templates"].get(list) != simdjson::SUCCESS)
+    return;
+  std::vector<Point3> vertices;
+  for (const dom::element vertex : list) {
+    dom::array triple;
+    std::array<double, 3> values{};
+    std::size_t i = 0;
+    if (vertex.get(triple) == simdjson::SUCCESS && triple.size() == 3)
+      for (const dom::element value : triple) values[i++] = finite_number(value).value_or(HUGE_VAL);
+    if (i != 3) values.fill(HUGE_VAL);  // what uses it becomes an issue
+    vertices.push_back({values[0], values[1], values[2]});
+  }
+  for (const dom::element geometry : templates) {
+    header.templates.objects.emplace_back();
+    dom::object object;
+    if (geometry.get(object) != simdjson::SUCCESS) continue;
+    GeometryBuilder builder(header.templates, header.templates.objects.size() - 1, vertices,
+                            header.srs, options.limits.max_points_per_building);
+    builder.add_one(object);
+    if (builder.too_large()) return;
+  }
+}
+
 // ---- the tree of city objects ------------------------------------------------------------------
 
-enum class ObjectKind : std::uint8_t { Building, Part, Installation, Extension, Other };
+enum class ObjectType : std::uint8_t { Building, Part, Installation, Extension, Other };
 
-ObjectKind kind_of(dom::object object) {
+ObjectType kind_of(dom::object object) {
   const auto type = text_member(object, "type").value_or("");
-  if (type == "Building") return ObjectKind::Building;
-  if (type == "BuildingPart") return ObjectKind::Part;
-  if (type == "BuildingInstallation") return ObjectKind::Installation;
-  if (!type.empty() && type.front() == '+') return ObjectKind::Extension;
-  return ObjectKind::Other;
+  if (type == "Building") return ObjectType::Building;
+  if (type == "BuildingPart") return ObjectType::Part;
+  if (type == "BuildingInstallation") return ObjectType::Installation;
+  if (!type.empty() && type.front() == '+') return ObjectType::Extension;
+  return ObjectType::Other;
 }
 
 /// Ids, kinds and who is part of whom.
 struct ObjectTree {
   struct Entry {
     std::string id{};
-    ObjectKind kind = ObjectKind::Other;
+    ObjectType kind = ObjectType::Other;
+    std::string extension{};  ///< type of an extension
     std::vector<std::uint32_t> children{};
     bool delivered = false;
   };
@@ -418,7 +588,9 @@ struct ObjectTree {
     entries.push_back({.id = std::move(id)});
     if (!object) return;
     entries.back().kind = kind_of(*object);
-    if (entries.back().kind == ObjectKind::Other) return;
+    if (entries.back().kind == ObjectType::Extension)
+      entries.back().extension = text_member(*object, "type").value_or("");
+    if (entries.back().kind == ObjectType::Other) return;
     keep_ids(*object, "parents", index, parents);
     keep_ids(*object, "children", index, children);
   }
@@ -444,8 +616,8 @@ struct ObjectTree {
     if (found == by_id.end()) return;
     const std::uint32_t parent = upwards ? found->second : from;
     const std::uint32_t child = upwards ? from : found->second;
-    const ObjectKind kind = entries[child].kind;
-    if (kind != ObjectKind::Part && kind != ObjectKind::Installation) return;
+    const ObjectType kind = entries[child].kind;
+    if (kind != ObjectType::Part && kind != ObjectType::Installation) return;
     if (!linked_.insert({parent, child}).second) return;
     entries[parent].children.push_back(child);
   }
@@ -467,12 +639,20 @@ struct Delivery {
   Result<void> deliver_all(ObjectTree& tree, const std::vector<Point3>& vertices,
                            const LoadObject& load) {
     for (const ObjectTree::Entry& entry : tree.entries)
-      if (entry.kind == ObjectKind::Extension) ++facts.skipped_objects;
-    for (const ObjectKind kind : {ObjectKind::Building, ObjectKind::Part})
+      if (entry.kind == ObjectType::Extension) {
+        ++facts.skipped_objects;
+        facts.count_skipped(entry.extension);
+      }
+    for (const ObjectType kind : {ObjectType::Building, ObjectType::Part})
       for (std::uint32_t i = 0; i < tree.entries.size(); ++i) {
         if (tree.entries[i].kind != kind || tree.entries[i].delivered) continue;
         if (options.stop.stop_requested()) return stopped();
         if (auto taken = deliver(tree, i, vertices, load); !taken) return taken;
+      }
+    for (const ObjectTree::Entry& entry : tree.entries)
+      if (entry.kind == ObjectType::Installation && !entry.delivered) {
+        ++facts.skipped_objects;
+        facts.count_skipped("BuildingInstallation without a building");
       }
     return {};
   }
@@ -503,19 +683,20 @@ struct Delivery {
       if (raw.gml_id.empty())
         raw.gml_id = index == 0 ? numbered_id(options.stem, options.buildings_before + ordinal)
                                 : numbered_id(feature.objects.front().gml_id, index);
-      for (auto child = entry.children.rbegin(); child != entry.children.rend(); ++child) {
-        if (tree.entries[*child].kind == ObjectKind::Installation)
-          ++raw.skipped_installations;
-        else
-          due.push_back({*child, static_cast<std::int32_t>(index)});
-      }
+      raw.kind = entry.kind == ObjectType::Building ? ObjectKind::Building
+                 : entry.kind == ObjectType::Part   ? ObjectKind::BuildingPart
+                                                    : ObjectKind::BuildingInstallation;
+      for (auto child = entry.children.rbegin(); child != entry.children.rend(); ++child)
+        due.push_back({*child, static_cast<std::int32_t>(index)});
       if (!object) {
         raw.issues.push_back({issue_code::kUnreadableGeometry, "the object is not readable JSON"});
         continue;
       }
       raw.attributes = attributes_of(*object);
+      raw.addresses = addresses_of(*object);
       GeometryBuilder builder(feature, index, vertices, header.srs,
                               options.limits.max_points_per_building);
+      builder.use_templates(header.templates, facts.srs_names[header.srs]);
       builder.add_all(*object);
       too_large = too_large || builder.too_large();
     }
@@ -605,6 +786,10 @@ Result<void> read_cityjson(const RandomReader& file, const DocumentOptions& opti
   }
   if (const JsonSlice* slice = slice_of("metadata"))
     if (const auto metadata = parse(*slice, "'metadata'")) read_metadata(*metadata, facts, header);
+
+  if (const JsonSlice* slice = slice_of("geometry-templates"))
+    if (const auto templates = parse(*slice, "'geometry-templates'"))
+      read_templates(*templates, options, header);
 
   const JsonSlice* vertices_slice = slice_of("vertices");
   const JsonSlice* objects_slice = slice_of("CityObjects");
@@ -768,6 +953,8 @@ Result<void> read_cityjson_seq(ByteReader& bytes, const DocumentOptions& options
       }
       if (dom::element metadata; object["metadata"].get(metadata) == simdjson::SUCCESS)
         read_metadata(metadata, facts, header);
+      if (dom::element templates; object["geometry-templates"].get(templates) == simdjson::SUCCESS)
+        read_templates(templates, options, header);
       if (!options.piece) facts.envelopes.push_back({.before = line + "\n"});
       continue;
     }

@@ -17,6 +17,8 @@ std::uint32_t DocumentFacts::intern_srs(std::string_view name) {
   return static_cast<std::uint32_t>(srs_names.size() - 1);
 }
 
+void DocumentFacts::count_skipped(std::string_view type) { count_name(skipped_types, type); }
+
 std::string numbered_id(std::string_view stem, std::uint64_t n) {
   std::string id(stem);
   id += '_';

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <set>
 #include <stop_token>
 #include <string>
@@ -33,6 +34,7 @@ struct RawPolygon {
 struct PolygonUse {
   std::uint32_t polygon = 0;
   bool reversed = false;
+  std::int32_t surface = -1;  ///< where it is another one than the polygon's own
 };
 
 struct RawShape {
@@ -45,14 +47,16 @@ struct RawShape {
 };
 
 struct RawObject {
+  ObjectKind kind = ObjectKind::Building;
   std::string gml_id{};
   std::int32_t parent = -1;  ///< index into Feature::objects
   std::vector<Surface> surfaces{};
   std::vector<RawShape> shapes{};
   Attributes attributes{};
+  std::vector<Address> addresses{};
   std::vector<Issue> issues{};
-  std::uint32_t skipped_installations = 0;
-  std::uint32_t skipped_ade_elements = 0;
+  std::map<std::string, std::uint32_t> skipped_ade_elements{};
+  bool inside = false;  ///< an installation in the building's interior: not delivered
 };
 
 /// Where in the unpacked text of a document something stands.
@@ -75,7 +79,8 @@ struct Feature {
   std::vector<Point3> points{};
   std::vector<RawRing> rings{};
   std::vector<RawPolygon> polygons{};
-  std::vector<RawObject> objects{};  ///< the first is the top-level building, parents before parts
+  std::vector<RawObject> objects{};  ///< the first is the top-level building, parents before what
+                                     ///< belongs to them
   std::uint32_t srs = 0;             ///< what polygons without own srsName inherit
   ByteRange bytes{};                 ///< unknown where the document cannot be read in pieces
   std::uint32_t envelope = 0;        ///< index into DocumentFacts::envelopes
@@ -109,12 +114,10 @@ struct SharedPlace {
   std::uint32_t envelope = 0;
 };
 
-/// Geometry that features of a document borrow from other features, by gml:id.
-struct SharedGeometry {
-  Feature pool{};
-  TextMap<std::vector<PolygonUse>> by_id{};
-  TextMap<SharedPlace> places{};
-};
+struct SharedGeometry;  // citygml_shapes.h
+
+/// Counted among DocumentFacts::skipped_types.
+inline constexpr std::string_view kSharedAddress = "address by xlink:href";
 
 /// What is known of a document besides its buildings.
 struct DocumentFacts {
@@ -128,8 +131,10 @@ struct DocumentFacts {
       unresolved{};                   ///< ids that features refer to and that they do not contain
   std::vector<Envelope> envelopes{};  ///< of pieces of the document, usually one
   std::uint64_t skipped_objects = 0;  ///< city objects of extension types
+  std::map<std::string, std::uint64_t> skipped_types{};  ///< the same and others, by name
 
   std::uint32_t intern_srs(std::string_view name);
+  void count_skipped(std::string_view type);  ///< in `skipped_types`
 };
 
 struct DocumentOptions {
@@ -140,6 +145,14 @@ struct DocumentOptions {
   const Envelope* piece = nullptr;         ///< set: the document is a piece in this envelope
   std::uint64_t buildings_before = 0;      ///< in the document, of a piece
 };
+
+/// Counts a name as long as the names are few: a document may invent any number.
+template <class Count>
+void count_name(std::map<std::string, Count>& counts, std::string_view name) {
+  constexpr std::size_t kMaxNames = 200, kMaxBytes = 100;
+  const std::string key(name.substr(0, kMaxBytes));
+  if (counts.size() < kMaxNames || counts.contains(key)) ++counts[key];
+}
 
 /// Takes a feature; it may be emptied, its memory is used again.
 using FeatureSink = std::function<Result<void>(Feature&)>;

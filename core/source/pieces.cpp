@@ -1,4 +1,5 @@
 #include "core/source/pieces.h"
+#include "core/source/citygml_shapes.h"
 
 #include <algorithm>
 #include <limits>

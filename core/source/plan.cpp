@@ -26,6 +26,17 @@ std::string joined(const Texts& texts) {
   return all;
 }
 
+// " (+NoiseBuilding 2, Bridge 1)"
+std::string listed_types(const std::map<std::string, std::uint64_t>& types) {
+  constexpr std::size_t kMaxTypes = 20;
+  std::vector<std::string> entries;
+  for (const auto& [name, count] : types) {
+    if (entries.size() == kMaxTypes) break;
+    entries.push_back(name + " " + std::to_string(count));
+  }
+  return entries.empty() ? "" : " (" + joined(entries) + ")";
+}
+
 bool overlap(const Box3& a, const Box3& b) {
   return a.min.x <= b.max.x && a.max.x >= b.min.x && a.min.y <= b.max.y && a.max.y >= b.min.y;
 }
@@ -440,10 +451,14 @@ class Planner {
       report.crs = joined(crs_names);
       for (const std::string& problem : problems)
         selection.warnings.push_back(record.name + ": " + problem);
+      std::map<std::string, std::uint64_t> types = record.facts.skipped_types;
+      if (const auto shared = types.extract(std::string(kSharedAddress)))
+        selection.warnings.push_back(record.name + ": " + std::to_string(shared.mapped()) +
+                                     " addresses by xlink:href were not read");
       if (record.facts.skipped_objects > 0)
-        selection.warnings.push_back(record.name + ": " +
-                                     std::to_string(record.facts.skipped_objects) +
-                                     " objects of extension types were not read");
+        selection.warnings.push_back(
+            record.name + ": " + std::to_string(record.facts.skipped_objects) +
+            " objects of extension types were not read" + listed_types(types));
       selection.inputs.push_back(std::move(report));
 
       selection.buildings += file.selected.size();

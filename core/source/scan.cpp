@@ -1,4 +1,5 @@
 #include "core/source/scan.h"
+#include "core/source/citygml_shapes.h"
 
 #include <algorithm>
 #include <utility>
@@ -20,6 +21,7 @@ class FootprintFinder {
   void add_to(Footprints& footprints) {
     for (std::size_t i = 0; i < feature_.objects.size(); ++i) {
       const RawObject& object = feature_.objects[i];
+      if (object.kind == ObjectKind::BuildingInstallation) continue;
       const auto is_ground = [&](const RawShape&, const RawPolygon& polygon) {
         return polygon.surface >= 0 && polygon.object == static_cast<std::int32_t>(i) &&
                object.surfaces[static_cast<std::size_t>(polygon.surface)].type ==
@@ -78,8 +80,9 @@ BuildingRecord summary(const Feature& feature) {
   building.envelope = feature.envelope;
   building.borrowed.assign(feature.borrowed.begin(), feature.borrowed.end());
   for (std::size_t i = 1; i < feature.objects.size(); ++i)
-    building.part_ids.push_back(feature.objects[i].gml_id);
-  for (const RawObject& object : feature.objects)
+    if (!feature.objects[i].inside) building.part_ids.push_back(feature.objects[i].gml_id);
+  for (const RawObject& object : feature.objects) {
+    if (object.kind == ObjectKind::BuildingInstallation) continue;
     for (const RawShape& shape : object.shapes)
       for (const PolygonUse& use : shape.uses) {
         const RawPolygon& polygon = feature.polygons[use.polygon];
@@ -90,6 +93,7 @@ BuildingRecord summary(const Feature& feature) {
             building.extent.add(feature.points[ring.first + p]);
         }
       }
+  }
   return building;
 }
 
@@ -111,15 +115,23 @@ Result<void> read_through(FileScan& scan, DocumentOptions options, bool with_foo
 }
 
 Result<void> find_shared_geometry(FileScan& scan, const DocumentOptions& options) {
-  auto bytes = ByteReader::open(scan.text, options.limits.max_file_bytes);
-  if (!bytes) return {};
   auto shared = std::make_shared<SharedGeometry>();
   DocumentFacts facts;
   facts.srs_names = std::move(scan.facts.srs_names);
-  if (auto collected =
-          collect_shared_geometry(*bytes, options, scan.facts.unresolved, facts, *shared);
-      !collected)
-    return collected;
+  std::set<std::string, std::less<>> wanted = std::move(scan.facts.unresolved);
+  constexpr int kMaxHops = 4;  // what is borrowed may borrow in turn
+  for (int hop = 0; hop < kMaxHops && !wanted.empty(); ++hop) {
+    auto bytes = ByteReader::open(scan.text, options.limits.max_file_bytes);
+    if (!bytes) return {};
+    const std::size_t before = shared->by_id.size();
+    facts.unresolved.clear();
+    if (auto collected = collect_shared_geometry(*bytes, options, wanted, facts, *shared);
+        !collected)
+      return collected;
+    if (shared->by_id.size() == before) break;
+    wanted = std::move(facts.unresolved);
+    facts.unresolved.clear();
+  }
   scan.facts = {};
   scan.facts.srs_names = std::move(facts.srs_names);
   scan.facts.envelopes = std::move(facts.envelopes);

@@ -35,6 +35,8 @@ XmlAttributes attributes_of(int count, const xmlChar** attributes) {
       found.orientation = trimmed(value);
     else if (key == "name")
       found.name = value;
+    else if (key == "count")
+      found.count = trimmed(value);
     else if (key == "decimal")
       found.decimal = value;
     else if (key == "cs")

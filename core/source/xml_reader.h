@@ -20,6 +20,7 @@ struct XmlName {
 /// event has been handled.
 struct XmlAttributes {
   std::string_view id{}, href{}, srs_name{}, srs_dimension{}, orientation{}, name{};
+  std::string_view count{};  ///< of positions in a gml:posList
   std::string_view decimal{}, coordinate_separator{}, tuple_separator{};  ///< of gml:coordinates
 };
 

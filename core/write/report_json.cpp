@@ -55,6 +55,7 @@ void append_issues(std::string& json, const std::vector<Issue>& issues) {
 void append_part_members(Members& members, const PartReport& part) {
   members.text("gml_id", part.gml_id);
   members.optional("name", part.name);
+  members.text("kind", to_string(part.kind));
   members.text("outcome", part.outcome);
   members.optional("merged_into", part.merged_into);
   members.optional("reason", part.reason);
