@@ -65,6 +65,7 @@ std::string facts_text(const FileRecord& file) {
                  {"unresolved", facts.unresolved},
                  {"envelopes", envelopes},
                  {"skipped_objects", facts.skipped_objects},
+                 {"skipped_types", facts.skipped_types},
                  {"srs", srs}});
 }
 
@@ -85,6 +86,7 @@ Result<void> read_facts(std::string_view text, FileRecord& file) {
                                  .srs = envelope.at(2),
                                  .dimension = envelope.at(3)});
     facts.skipped_objects = stored.at("skipped_objects");
+    facts.skipped_types = stored.value("skipped_types", facts.skipped_types);
     for (const json& extent : stored.at("srs"))
       file.srs.push_back({.buildings = extent.at(0),
                           .all = box_from(extent.at(1)),

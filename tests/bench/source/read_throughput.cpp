@@ -1,10 +1,13 @@
 // read_throughput FILE [RUNS]: how fast a file is read, parse to city model, beside the time that
-// `xmllint --stream --noout --huge` needs for it where xmllint is installed. Medians.
+// `xmllint --stream --noout --huge` needs for it where xmllint is installed, or for CityJSON the
+// SAX pass of nlohmann-json. Medians.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -27,6 +30,25 @@ double median_s(int runs, Action&& action) {
   std::nth_element(times.begin(), times.begin() + runs / 2, times.end());
   return times[static_cast<std::size_t>(runs / 2)];
 }
+
+/// Takes every event and does nothing.
+struct Ignore : nlohmann::json_sax<nlohmann::json> {
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return true; }
+  bool key(string_t&) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
+    return false;
+  }
+};
 
 }  // namespace
 
@@ -73,6 +95,17 @@ int main(int argc, char** argv) {
               megabytes / read_s, static_cast<unsigned long long>(buildings),
               static_cast<unsigned long long>(polygons));
 
+  if (path.extension() == ".json") {
+    const double sax_s = median_s(runs, [&] {
+      std::ifstream file(path, std::ios::binary);
+      Ignore ignore;
+      return nlohmann::json::sax_parse(file, &ignore);
+    });
+    if (sax_s > 0)
+      std::printf("%-10s %8.3f s %8.1f MB/s  read takes %.2f times as long\n", "nlohmann", sax_s,
+                  megabytes / sax_s, read_s / sax_s);
+    return 0;
+  }
   const std::string command = "xmllint --stream --noout --huge '" + path.string() + "'";
   const double xmllint_s =
       median_s(runs, [&] { return std::system(command.c_str()) == 0; });  // NOLINT
