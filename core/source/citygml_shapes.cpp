@@ -271,9 +271,8 @@ struct GeometryTree::Assembly {
 void GeometryTree::put(const Root& root, std::vector<PolygonUse>& uses, Walk& walk) const {
   if (root.placement < 0) return;
   const Placement& placement = placements_[index(root.placement)];
-  const std::string srs_name = walk.facts.srs_names[placement.srs];
-  for (PolygonUse& use : uses)
-    use = place_copy(walk.feature, use, placement, srs_name, walk.feature);
+  const Placer placer(placement, walk.facts.srs_names[placement.srs]);
+  for (PolygonUse& use : uses) use = placer.copy(walk.feature, use, walk.feature);
 }
 
 void GeometryTree::add_boundary(const Root& root, Walk& walk, Assembly& assembly) const {

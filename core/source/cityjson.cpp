@@ -355,10 +355,11 @@ class GeometryBuilder {
       if (surface.parent >= 0) surface.parent += first;
       object_.surfaces.push_back(std::move(surface));
     }
+    const Placer placer(placement, srs_name_);
     for (const RawShape& template_shape : model.shapes) {
       RawShape shape = template_shape;
       for (PolygonUse& use : shape.uses) {
-        use = place_copy(*templates_, use, placement, srs_name_, feature_);
+        use = placer.copy(*templates_, use, feature_);
         RawPolygon& polygon = feature_.polygons[use.polygon];
         polygon.object = object_index_;
         if (polygon.surface >= 0) polygon.surface += first;

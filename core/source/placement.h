@@ -18,10 +18,27 @@ struct Placement {
 /// Sixteen finite numbers, the last row 0 0 0 w with w not 0.
 std::optional<std::array<double, 16>> matrix_from(std::string_view text);
 
-/// Copies a polygon of `from` (which may be `to`) to where the placement puts it. Template
-/// coordinates are metres east, north and up of the reference point; a matrix that mirrors turns
-/// the polygon so that it still looks outwards.
-PolygonUse place_copy(const Feature& from, const PolygonUse& use, const Placement& placement,
-                      std::string_view srs_name, Feature& to);
+/// Copies polygons to where a placement puts them. Template coordinates are metres east, north and
+/// up of the reference point; a matrix that mirrors turns polygons so that they still look
+/// outwards.
+class Placer {
+ public:
+  Placer(const Placement& placement, std::string_view srs_name);
+
+  /// `from` may be `to`.
+  PolygonUse copy(const Feature& from, const PolygonUse& use, Feature& to) const;
+
+ private:
+  /// Units of the file's axes in a metre east, north and up of the reference point.
+  struct Steps {
+    double east = 1, north = 1, up = 1;
+    bool north_first = false;
+  };
+  static Steps steps_at(std::string_view srs_name, const Point3& reference);
+
+  Placement placement_;
+  Steps steps_;
+  bool mirrors_;
+};
 
 }  // namespace citymesh::source

@@ -52,8 +52,9 @@ struct Selection {
   std::vector<std::string> warnings{};
   std::vector<std::string> missing_ids{};  ///< of `object_ids`, those no source has
   std::vector<std::string>
-      object_ids{};  ///< gml_id of every selected building and part, in reading order, repeated
-                     ///< ids included; from these names are made before anything is written
+      object_ids{};  ///< gml_id of every selected building, part and installation, in reading
+                     ///< order, repeated ids included; from these names are made before anything is
+                     ///< written
   std::shared_ptr<const void> details{};  ///< for the source that made it
 };
 

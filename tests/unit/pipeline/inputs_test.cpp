@@ -123,7 +123,6 @@ TEST(Inputs, AnUnknownProcessIsNotFoundAndTheOthersAreNamed) {
 
 TEST(Inputs, WhatIsNotBuiltIsSaidSo) {
   EXPECT_EQ(refused(R"({"unite_neighbours":true})").code, ErrorCode::Unimplemented);
-  EXPECT_EQ(refused(R"({"installations":"keep"})").code, ErrorCode::Unimplemented);
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(
                            R"({"lod":["3"]})", true},
                       Pair{"block", "citygml4j-samples/lod2_buildings_v3.gml",
                            "citygml4j-samples/lod2_buildings_v2.json", "{}", "{}", true}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace
 }  // namespace citymesh

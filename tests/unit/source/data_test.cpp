@@ -114,15 +114,17 @@ TEST_P(RealData, IsReadWithAllBuildingsPartsAndItsCrs) {
   EXPECT_EQ(selection->inputs[0].format, known.format);
   EXPECT_EQ(selection->inputs[0].buildings, known.buildings);
   EXPECT_EQ(selection->buildings, known.buildings);
-  EXPECT_EQ(selection->object_ids.size(), known.buildings + known.parts);
   EXPECT_EQ(selection->crs.id, known.crs);
 
-  std::uint64_t buildings = 0, parts = 0, empty = 0, issues = 0;
+  std::uint64_t buildings = 0, parts = 0, installations = 0, empty = 0, issues = 0;
   Box3 whole;
   const auto done = (*source)->read({}, *selection,
                                     [&](Building&& building) -> Result<void> {
                                       ++buildings;
                                       parts += building.parts.size();
+                                      installations += building.installations.size();
+                                      for (const Building& part : building.parts)
+                                        installations += part.installations.size();
                                       issues += building.source_issues.size();
                                       for (const Building& part : building.parts)
                                         issues += part.source_issues.size();
@@ -135,6 +137,7 @@ TEST_P(RealData, IsReadWithAllBuildingsPartsAndItsCrs) {
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_EQ(buildings, known.buildings);
   EXPECT_EQ(parts, known.parts);
+  EXPECT_EQ(selection->object_ids.size(), buildings + parts + installations);
   EXPECT_EQ(empty, 0u);
   EXPECT_EQ(issues, 0u);
   // Relative to an origin at the lower corner of what the file declares or holds.
