@@ -5,7 +5,7 @@ include(Precompile)
 set(CITYMESH_TEST_KINDS "support;architecture;unit;codes;golden;property;fuzz;integration;e2e;bench" CACHE STRING
     "Folders of tests/ to build")
 # Rooms whose code runs on several threads: their tests carry the label `threads` too and run under the thread sanitizer.
-set(citymesh_threaded_rooms jobs stores worker pipeline)
+set(citymesh_threaded_rooms catalogue jobs stores worker pipeline)
 add_custom_target(citymesh_thread_tests)
 add_custom_target(citymesh_fuzzers)
 

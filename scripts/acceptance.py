@@ -14,7 +14,6 @@ import subprocess
 import sys
 import tempfile
 import time
-import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -27,15 +26,6 @@ def known_files(table, data, only):
         name, form, buildings, parts, *options = line.split("\t")
         if only in name:
             yield name, data / name, form, int(buildings), int(parts), options
-
-
-def unpacked(path, folder):
-    """An archive holds one city model."""
-    if path.suffix != ".zip":
-        return path
-    with zipfile.ZipFile(path) as archive:
-        member = next(name for name in archive.namelist() if name.endswith((".gml", ".xml")))
-        return Path(archive.extract(member, folder))
 
 
 def accounting_faults(report, expected):
@@ -103,10 +93,9 @@ def body_faults(report, obj_names, stl_names):
 def judge(program, checker, path, expected, extra):
     """(row cells, faults)"""
     with tempfile.TemporaryDirectory(prefix="citymesh-acceptance-") as folder:
-        source = unpacked(path, folder)
         output = Path(folder, "out")
         started = time.monotonic()
-        run = subprocess.run([program, "run", "export-for-simulation", "--input", source, "--output", output,
+        run = subprocess.run([program, "run", "export-for-simulation", "--input", path, "--output", output,
                               "--format", "obj,stl", "--threads", "1", *extra], capture_output=True, text=True, stdin=subprocess.DEVNULL)
         seconds = time.monotonic() - started
         if run.returncode not in (0, 1):

@@ -42,6 +42,7 @@ TEST(CommandLine, HelpAndVersionAreOnStdoutEverywhere) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
                                                     {"run", "--help"},
                                                     {"validate", "--help"},
+                                                    {"index", "--help"},
                                                     {"serve", "--help"},
                                                     {"processes", "--help"}}) {
     const auto outcome = citymesh(arguments);
@@ -168,6 +169,37 @@ TEST(CommandLine, CtrlCStopsCleanly) {
   EXPECT_EQ(program.wait(), 2);
   EXPECT_THAT(program.err(), HasSubstr("stopped"));
   EXPECT_TRUE(std::filesystem::is_empty(folder / "out"));
+}
+
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(CommandLine, AnIndexedFolderGivesTheSameResultsAsItsFiles) {
+  const TempFolder folder;
+  const auto tiles = folder / "tiles";
+  std::filesystem::create_directory(tiles);
+  for (const char* tile : {"3920_5820.gml", "3900_5819.gml", "3920_5818.gml.gz"})
+    std::filesystem::copy_file(std::filesystem::path(CITYMESH_TEST_DATA "/berlin") / tile,
+                               tiles / tile);
+  const std::vector<std::string> box{"--bbox", "391950,5818000,392400,5820200@EPSG:25833"};
+
+  ASSERT_EQ(export_to(folder / "files", box, tiles.string()).code, 0);
+  const auto indexed = citymesh({"index", tiles.string()});
+  EXPECT_EQ(indexed.code, 0) << indexed.err;
+  EXPECT_THAT(indexed.out, AllOf(HasSubstr("3 files, 82 buildings"), HasSubstr("indexed   3")));
+  EXPECT_THAT(citymesh({"index", tiles.string()}).out, HasSubstr("unchanged 3"));
+  ASSERT_EQ(export_to(folder / "catalogue", box, tiles.string()).code, 0);
+  for (const char* file : {"model.obj", "report.json", "picture.svg"})
+    EXPECT_EQ(bytes_of(folder / "files" / file), bytes_of(folder / "catalogue" / file)) << file;
+}
+
+TEST(CommandLine, IndexingWhatIsNoFolderIsExitCodeTwo) {
+  const auto outcome = citymesh({"index", "/nonexistent/folder"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("/nonexistent/folder"));
+  EXPECT_EQ(citymesh({"index", kTile}).code, 2);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/support/temp_folder.h"
+#include "tests/unit/source/reading.h"
 
 namespace citymesh::source {
 namespace {
@@ -191,6 +192,31 @@ TEST_F(Zip, MissingArchivesAndFoldersAreNamed) {
   const auto members = unpack_zip(archive_, folder_ / "none", {});
   ASSERT_FALSE(members);
   EXPECT_EQ(members.error().code, ErrorCode::FailedPrecondition);
+}
+
+TEST_F(Zip, EveryCityModelOfAnArchiveIsAnInput) {
+  write({{"north/a.gml", city_model(simple_building("a", 0, 0))},
+         {"notes.txt", "no city model"},
+         {"south.gml", city_model(simple_building("b", 50, 0))}});
+  auto source = open_files({archive_}, {});
+  ASSERT_TRUE(source);
+  const Reading reading = read_from(**source);
+  EXPECT_THAT(reading.ids(), ElementsAre("a", "b"));
+  EXPECT_EQ(reading.input(0).file, "a.zip/north/a.gml");
+  EXPECT_EQ(reading.input(1).file, "a.zip/south.gml");
+  EXPECT_THAT(reading.selection.warnings, ::testing::Contains(HasSubstr("notes.txt")));
+  EXPECT_EQ(read_from(**source).ids(), reading.ids()) << "and again";
+}
+
+TEST_F(Zip, ADamagedArchiveIsAnInputThatCouldNotBeRead) {
+  write({{"a.gml", "A"}, {"b.gml", "the original", S_IFREG, true}});
+  replace("original", "forgery!");
+  auto source = open_files({archive_}, {});
+  ASSERT_TRUE(source);
+  const Reading reading = read_from(**source);
+  EXPECT_FALSE(reading.error);
+  EXPECT_EQ(reading.input().state, "failed");
+  EXPECT_THAT(reading.input().message, HasSubstr("'b.gml'"));
 }
 
 }  // namespace
