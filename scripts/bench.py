@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The speed figures: reading against xmllint, buildings per second of the whole run on one core, growth from 10 to 100 MB, memory.
+"""The speed figures: reading against xmllint, buildings per second of the whole run on one core, growth with size, memory; with
+--catalogue: indexing a folder and finding a box in it.
 
 Tiles real CityGML to the wanted sizes (kept in out/bench), pins every measured program to one core, takes the median of the runs
 and prints a Markdown table.
@@ -48,6 +49,16 @@ def median_of(runs, command, core):
     return statistics.median(r[0] for r in results), max(r[1] for r in results), results[0][2]
 
 
+def big_folder(megabytes, folder):
+    """All Berlin tiles of the tests, tiled to the same size each."""
+    sources = sorted((ROOT / "tests/data/berlin").glob("*.gml*"))
+    tiles = folder / f"city_{megabytes}"
+    tiles.mkdir(exist_ok=True)
+    for source in sources:
+        big_file(source, round(int(megabytes) / len(sources)), tiles)
+    return tiles
+
+
 def buildings_in(path):
     count = 0
     with open(path, "rb") as file:
@@ -63,11 +74,17 @@ def main():
     parser.add_argument("--sizes", default="10,100", help="megabytes")
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--core", type=int, default=sorted(os.sched_getaffinity(0))[-1])
+    parser.add_argument("--catalogue", metavar="MB", help="also index a folder of this size and ask for boxes")
     parser.add_argument("--folder", type=Path, default=ROOT / "out/bench")
     arguments = parser.parse_args()
     arguments.folder.mkdir(parents=True, exist_ok=True)
     program = arguments.build / "services/apps/citymesh"
     reader = arguments.build / "tests/bench/source/read_throughput"
+
+    if arguments.catalogue:
+        tiles = big_folder(arguments.catalogue, arguments.folder)
+        latency = arguments.build / "tests/bench/catalogue/catalogue_latency"
+        print(measured([latency, tiles, "50", arguments.runs], arguments.core)[2], flush=True)
 
     print(f"Median of {arguments.runs}, one core, {Path(arguments.source).name} tiled\n")
     print("| file | buildings | xmllint | selecting | reading | reading / xmllint | whole run | buildings/s | peak memory |")
