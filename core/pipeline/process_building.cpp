@@ -71,7 +71,7 @@ class RoundTripGate {
     Meshed meshed = mesh(shell);
     if (const Issue* issue = std::get_if<Issue>(&meshed)) return {*issue};
     mesh_ = std::get<TriangleMesh>(std::move(meshed));
-    const std::uint64_t meant = signature(mesh_.points, mesh_.triangles);
+    fingerprint_ = signature(mesh_.points, mesh_.triangles);
 
     std::vector<Issue> issues;
     const auto judge = [&](const WeldedBody& body, std::string_view where) {
@@ -91,7 +91,7 @@ class RoundTripGate {
         issues.push_back({issue_code::kEncodingLoss, body.error().message, 0});
         continue;
       }
-      if (signature(body->points, body->triangles) != meant) {
+      if (signature(body->points, body->triangles) != fingerprint_) {
         issues.push_back(
             {issue_code::kEncodingLoss,
              fmt::format("{} holds {} triangles that differ from the {} meant", open.format->key,
@@ -107,6 +107,7 @@ class RoundTripGate {
   }
 
   TriangleMesh take_mesh() { return std::move(mesh_); }
+  std::uint64_t fingerprint() const { return fingerprint_; }
 
   /// A format that cannot hold such coordinates at all, whatever the rung.
   const std::optional<Error>& refused() const { return refused_; }
@@ -114,12 +115,14 @@ class RoundTripGate {
  private:
   const std::vector<OpenFormat>& formats_;
   TriangleMesh mesh_;
+  std::uint64_t fingerprint_ = 0;
   std::optional<Error> refused_;
 };
 
 struct ProcessedPart {
   PartReport report{};
   std::optional<Body> body{};
+  std::uint64_t fingerprint = 0;
   std::optional<Error> refused{};
 };
 
@@ -165,6 +168,7 @@ ProcessedPart process_part(const Building& building, const std::string& name, co
   body.attributes = building.attributes;
   body.addresses = building.addresses;
   body.mesh = gate.take_mesh();
+  processed.fingerprint = gate.fingerprint();
   report.volume_after_m3 = volume_m3(body.mesh.points, body.mesh.triangles);
   report.triangles = body.mesh.triangles.size();
   processed.body = std::move(body);
@@ -241,6 +245,7 @@ ProcessedBuilding process_building(const NamedBuilding& named, const Inputs& inp
     processed.refused = own.refused;
     if (own.body) {
       bodies.push_back(std::move(*own.body));
+      processed.fingerprints.push_back(own.fingerprint);
       any_geometry = true;
     } else if (!silent) {
       first_reason = own.report.reason;
@@ -256,6 +261,7 @@ ProcessedBuilding process_building(const NamedBuilding& named, const Inputs& inp
     if (part.body) {
       add_up(report, part.report);
       bodies.push_back(std::move(*part.body));
+      processed.fingerprints.push_back(part.fingerprint);
       any_geometry = any_geometry || !installation;
     } else if (first_reason.empty() && !installation) {
       first_reason = part.report.reason;

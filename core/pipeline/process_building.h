@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,7 +31,8 @@ struct NamedBuilding {
 
 struct ProcessedBuilding {
   BuildingReport report{};
-  std::optional<BuildingBodies> bodies{};  ///< none when dropped
+  std::optional<BuildingBodies> bodies{};     ///< none when dropped
+  std::vector<std::uint64_t> fingerprints{};  ///< signature of each body's triangles
   std::optional<Error> refused{};  ///< a format that cannot hold the building: the end of the run
 };
 

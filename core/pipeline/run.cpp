@@ -1,22 +1,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
-#include <unordered_map>
 #include <unordered_set>
 
 #include "core/base/parallel.h"
 #include "core/base/version.h"
-#include "core/gates/gates.h"
-#include "core/geometry/measure.h"
-#include "core/pipeline/contacts.h"
 #include "core/pipeline/inputs.h"
+#include "core/pipeline/manifest.h"
 #include "core/pipeline/names.h"
 #include "core/pipeline/pipeline.h"
 #include "core/pipeline/process_building.h"
-#include "core/pipeline/signature.h"
+#include "core/pipeline/totals.h"
 #include "core/write/write.h"
 
 namespace citymesh {
@@ -25,158 +20,6 @@ namespace {
 constexpr std::size_t kBatchPerThread = 32;  ///< buildings in memory at a time
 
 Error cancelled() { return fail(ErrorCode::Cancelled, "stopped before the end"); }
-
-/// Adds up what report.json says of the whole run.
-class Totals {
- public:
-  void add(const BuildingReport& building, const BuildingBodies* bodies) {
-    count(report_.counts, building.outcome);
-    for (const PartReport& part : building.parts)
-      if (part.kind == ObjectKind::BuildingPart) count(report_.part_counts, part.outcome);
-    if (building.outcome == "delivered") {
-      if (!building.rung.empty()) ++rungs_[building.rung];
-    } else {
-      ++reasons_[building.reason];
-    }
-    if (!bodies) return;
-    for (const Body& body : bodies->bodies) add(body.mesh);
-  }
-
-  /// What was left out of a building by choice.
-  void add_skipped(const Building& building) {
-    if (!keep_installations_) installations_ += building.installations.size();
-    for (const auto& [name, count] : building.skipped_ade_elements) ade_elements_[name] += count;
-    for (const Building& part : building.parts) add_skipped(part);
-    for (const Building& installation : building.installations) add_skipped(installation);
-  }
-
-  void add(const TriangleMesh& mesh) {
-    contacts_.add(mesh);
-    ++report_.bodies;
-    report_.points += mesh.points.size();
-    report_.triangles += mesh.triangles.size();
-    report_.volume_m3 += volume_m3(mesh.points, mesh.triangles);
-    report_.area_m2 += area_m2(mesh.points, mesh.triangles);
-    for (const GridPoint& p : mesh.points) report_.extent.add(to_metres(p));
-    for (const Triangle& t : mesh.triangles) {
-      const double a = distance_m(mesh.points[t[1]], mesh.points[t[2]]);
-      const double b = distance_m(mesh.points[t[2]], mesh.points[t[0]]);
-      const double c = distance_m(mesh.points[t[0]], mesh.points[t[1]]);
-      const double shortest = std::min({a, b, c}), longest = std::max({a, b, c});
-      const double middle = a + b + c - shortest - longest;
-      min_edge_m_ = std::min(min_edge_m_, shortest);
-      // The smallest angle lies opposite the shortest edge (law of cosines).
-      const double cosine =
-          (middle * middle + longest * longest - shortest * shortest) / (2 * middle * longest);
-      max_cosine_ = std::max(max_cosine_, std::min(cosine, 1.0));
-    }
-  }
-
-  RunReport finish() {
-    report_.contacts = contacts_.count();
-    if (installations_ > 0)
-      report_.warnings.push_back(
-          fmt::format("{} building installations were left out", installations_));
-    if (!ade_elements_.empty()) {
-      std::uint64_t elements = 0;
-      std::string names;
-      for (const auto& [name, count] : ade_elements_) {
-        elements += count;
-        names += fmt::format("{}{} {}", names.empty() ? "" : ", ", name, count);
-      }
-      report_.warnings.push_back(
-          fmt::format("{} elements of extensions (ADE) were skipped: {}", elements, names));
-    }
-    report_.rungs.assign(rungs_.begin(), rungs_.end());
-    report_.drop_reasons.assign(reasons_.begin(), reasons_.end());
-    if (report_.triangles > 0) {
-      report_.min_edge_m = min_edge_m_;
-      report_.min_angle_deg = std::acos(max_cosine_) * 180.0 / 3.14159265358979323846;
-    }
-    return std::move(report_);
-  }
-
-  RunReport& report() { return report_; }
-  void keep_installations() { keep_installations_ = true; }
-
- private:
-  static void count(Counts& counts, const std::string& outcome) {
-    ++counts.requested;
-    ++(outcome == "delivered" ? counts.delivered
-       : outcome == "merged"  ? counts.merged
-                              : counts.dropped);
-  }
-
-  RunReport report_;
-  Contacts contacts_;
-  std::uint64_t installations_ = 0;
-  std::map<std::string, std::uint64_t> ade_elements_;
-  bool keep_installations_ = false;
-  std::map<std::string, std::uint64_t> rungs_, reasons_;
-  double min_edge_m_ = std::numeric_limits<double>::infinity();
-  double max_cosine_ = -1;
-};
-
-/// What the finished files must hold, body by body.
-class Manifest {
- public:
-  void add(const BuildingBodies& building) {
-    for (const Body& body : building.bodies) {
-      const std::uint64_t fingerprint = signature(body.mesh.points, body.mesh.triangles);
-      bodies_.emplace(body.name, fingerprint);
-      fingerprints_.insert(fingerprint);
-      sum_ += fingerprint;
-    }
-  }
-
-  /// Re-reads a finished file once. A body is fit when the file holds exactly the triangles that
-  /// passed the gates.
-  Result<void> check(const Format& format, const std::filesystem::path& file, bool by_type,
-                     const RunContext& context) const {
-    const bool named = !by_type && !format.gml_ids;
-    std::uint64_t sum = 0, count = 0;
-    auto read = parse_file(format.key, file, [&](ParsedBody&& parsed) -> Result<void> {
-      if (context.stopped()) return cancelled();
-      if (const auto labels = check_labels(parsed, named); !labels.empty())
-        return fail(ErrorCode::DataLoss,
-                    fmt::format("{}: body `{}` fails gate {}: {}", file.filename().string(),
-                                parsed.name, labels[0].gate, labels[0].where));
-      auto body = weld(parsed);
-      if (!body)
-        return fail(ErrorCode::DataLoss, fmt::format("{}: body `{}`: {}", file.filename().string(),
-                                                     parsed.name, body.error().message));
-      const std::uint64_t fingerprint = signature(body->points, body->triangles);
-      sum += fingerprint;
-      ++count;
-      const auto expected = bodies_.find(parsed.name);
-      const bool fit = named ? expected != bodies_.end() && expected->second == fingerprint
-                             : by_type || fingerprints_.contains(fingerprint);
-      if (!fit)
-        return fail(
-            ErrorCode::DataLoss,
-            fmt::format(
-                "{}: body `{}` fails gate {}: its triangles are not those that were delivered",
-                file.filename().string(), parsed.name, first_failure(*body)));
-      return {};
-    });
-    if (!read) return read.error();
-    if (sum != sum_ || (!by_type && count != bodies_.size()))
-      return fail(ErrorCode::DataLoss,
-                  fmt::format("{}: holds {} bodies, {} were delivered", file.filename().string(),
-                              count, bodies_.size()));
-    return {};
-  }
-
- private:
-  static std::string first_failure(const WeldedBody& body) {
-    const auto failures = check_shell(body.points, body.triangles, {});
-    return failures.empty() ? "G16" : std::string(failures[0].gate);
-  }
-
-  std::unordered_map<std::string, std::uint64_t> bodies_;
-  std::unordered_set<std::uint64_t> fingerprints_;
-  std::uint64_t sum_ = 0;
-};
 
 /// One run, from the selection to the finished files.
 class Run {
@@ -293,7 +136,7 @@ class Run {
       const BuildingBodies* bodies = building.bodies ? &*building.bodies : nullptr;
       totals_.add(building.report, bodies);
       if (bodies) {
-        manifest_.add(*bodies);
+        manifest_.add(*bodies, building.fingerprints);
         for (const OpenFormat& open : formats_)
           if (auto added = open.writer->add(*bodies); !added) return added.error();
       }
