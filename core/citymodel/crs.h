@@ -52,7 +52,8 @@ Crs with_vertical(const Crs& crs, const Crs& heights);
 class Transformer {
  public:
   static Result<Transformer> create(const Crs& from, const Crs& to);
-  /// To longitude and latitude of the CRS's own datum: much cheaper to make than one between datums.
+  /// To longitude and latitude of the CRS's own datum: much cheaper to make than one between
+  /// datums.
   static Result<Transformer> to_degrees(const Crs& from);
   Transformer(Transformer&&) noexcept;
   Transformer& operator=(Transformer&&) noexcept;

@@ -85,8 +85,8 @@ class ScannedFiles final : public Catalogue {
            extent.max.y >= box.min.y;
   }
 
-  /// Archives are replaced by their members, unpacked once. One that cannot be unpacked stays, to be
-  /// reported as a file that cannot be read.
+  /// Archives are replaced by their members, unpacked once. One that cannot be unpacked stays, to
+  /// be reported as a file that cannot be read.
   Result<std::vector<FileRecord>> unpacked(std::vector<FileRecord> files) {
     const std::lock_guard lock(mutex_);
     std::vector<FileRecord> all;

@@ -12,8 +12,8 @@ namespace citymesh::source {
 /// PermissionDenied, FailedPrecondition naming the path.
 Result<std::vector<FileRecord>> list_files(const std::vector<std::filesystem::path>& paths);
 
-/// The members of an archive as files of their own, unpacked into `folder`: named "tiles.zip/a.gml",
-/// passed over when they are no city models. Errors: as unpack_zip.
+/// The members of an archive as files of their own, unpacked into `folder`: named
+/// "tiles.zip/a.gml", passed over when they are no city models. Errors: as unpack_zip.
 Result<std::vector<FileRecord>> unpack_archive(const FileRecord& archive,
                                                const std::filesystem::path& folder,
                                                const ReadLimits& limits);
