@@ -163,6 +163,10 @@ class Builder {
     for (std::size_t s = 0; s < count; ++s) {
       if (!is_opening(surfaces_[s].type)) continue;
       std::size_t host = hosts.host_of(surfaces_[s]);
+      // A closure of 3.0 is no surface of a construction: only those have openings.
+      if (host != kNone && version_ == CityGml::V3 &&
+          surfaces_[host].type == SurfaceType::ClosureSurface)
+        host = kNone;
       if (host == kNone) {  // the schema wants one: a wall that is nothing but its opening
         host = surfaces_.size();
         surfaces_.push_back({SurfaceType::WallSurface, ids_.generated('h', s), {}, {}});

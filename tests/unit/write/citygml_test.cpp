@@ -182,6 +182,24 @@ TEST(CityGml3, IsUniqueInWhatAWallWithoutNeighbourOfAWindowGets) {
 
 /// With CITYMESH_SCHEMAS naming a folder of OGC's schemas (files `citygml2.xsd` and `citygml3.xsd`
 /// that import the building and generics modules), files are validated against them.
+TEST(CityGml3, HasNoOpeningsInClosuresWhichAreNoSurfacesOfAConstruction) {
+  auto building = test::rich_building();
+  for (Body& body : building.bodies)
+    for (Face& face : body.mesh.faces)
+      if (face.type == SurfaceType::WallSurface) face.type = SurfaceType::ClosureSurface;
+  const std::string xml = encode("citygml3", building);
+  ASSERT_THAT(xml, HasSubstr("<ClosureSurface"));
+  std::size_t openings = 0;
+  for (auto at = xml.find("<con:fillingSurface>"); at != std::string::npos;
+       at = xml.find("<con:fillingSurface>", at + 1), ++openings) {
+    const auto closure = xml.rfind("<ClosureSurface", at),
+               closed = xml.rfind("</ClosureSurface", at);
+    EXPECT_TRUE(closure == std::string::npos || (closed != std::string::npos && closed > closure))
+        << xml.substr(closure, at - closure);
+  }
+  EXPECT_GT(openings, 0u);
+}
+
 TEST_P(BothVersions, IsValidAgainstTheSchemasOfOgc) {
   const char* folder = std::getenv("CITYMESH_SCHEMAS");
   if (folder == nullptr) GTEST_SKIP() << "CITYMESH_SCHEMAS names no folder of OGC's schemas";
