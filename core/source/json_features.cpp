@@ -88,9 +88,7 @@ const dom::object* JsonFeatures::feature(std::size_t i) {
   return nullptr;
 }
 
-namespace {
-
-Attributes attributes_from(dom::object members) {
+Attributes attributes_from(const dom::object& members) {
   Attributes attributes;
   for (const auto& [key, value] : members) {
     const std::string name(key);
@@ -118,6 +116,8 @@ Attributes attributes_from(dom::object members) {
   }
   return attributes;
 }
+
+namespace {
 
 std::string id_from(dom::object object) {
   dom::element id;

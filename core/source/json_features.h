@@ -52,6 +52,9 @@ class JsonFeatures {
   std::unique_ptr<Parser> parser_;
 };
 
+/// Texts, numbers and truth values as they are, lists and objects as JSON text; null is left out.
+Attributes attributes_from(const simdjson::dom::object& members);
+
 /// Empties the feature and makes it the building of a JSON feature: its `id` (else numbered) and
 /// its `properties`, without geometry.
 void begin_feature(const simdjson::dom::object& object, std::size_t number,
