@@ -200,5 +200,33 @@ TEST_F(Indexed, RepeatedIdsAndFeaturesOfOneLineKeepTheirPlaces) {
               1e-6);
 }
 
+TEST_F(Indexed, SeveralCrssInAFolderAreAnErrorOnlyWhereTheSelectionMixesThem) {
+  documents_.add("zone33.gml", tile({simple_building("east", 390010, 5820010)}));
+  documents_.add("zone32.gml",
+                 city_model(envelope("EPSG:25832", "690000 5340000 500", "691000 5341000 600") +
+                            simple_building("west", 690010, 5340010)));
+  const Reading mixed = read();
+  ASSERT_TRUE(mixed.error);
+  EXPECT_EQ(mixed.error->code, ErrorCode::FailedPrecondition);
+  EXPECT_THAT(mixed.error->message, ::testing::AllOf(HasSubstr("EPSG:25832"), HasSubstr(kUtm33)));
+  EXPECT_THAT(read(box(390000, 5820000, 390100, 5820100)).ids(), ElementsAre("east"));
+  BuildingQuery both;
+  both.crs = Crs{kUtm33};
+  EXPECT_THAT(read(both).ids(), ::testing::UnorderedElementsAre("east", "west"));
+}
+
+TEST_F(Indexed, MembersOfArchivesAreFilesOfTheirOwn) {
+  const auto archive = documents_.folder() / "tiles.zip";
+  std::error_code error;
+  std::filesystem::copy_file(CITYMESH_TEST_DATA "/meshes/two_tiles.zip", archive, error);
+  ASSERT_FALSE(error) << error.message();
+  const auto report = update();
+  EXPECT_EQ(report.indexed, 1u);
+  EXPECT_THAT(report.problems, IsEmpty());
+  const Reading reading = read();
+  EXPECT_THAT(reading.ids(), ElementsAre("north", "south"));
+  EXPECT_EQ(reading.input(0).file, "tiles.zip/a/north.gml");
+}
+
 }  // namespace
 }  // namespace citymesh

@@ -364,5 +364,38 @@ TEST(Reading, AFileThatChangedSinceItsSelectionIsRefused) {
   EXPECT_THAT(read_from(**source).ids(), ElementsAre("good", "last")) << "selected anew it is read";
 }
 
+TEST(BadCoordinates, AListOfTenMegabytesIsReadAndDoesNotHoldUpItsNeighbours) {
+  std::string positions;
+  positions.reserve(11'000'000);
+  while (positions.size() < 10'000'000) positions += "390000.125 5820000.250 33.500 ";
+  const Reading reading = read_text(
+      "long.gml", city_model(building("long", multi_surface(member(polygon("p", positions)))) +
+                             simple_building("good", 0, 0)));
+  ASSERT_FALSE(reading.error);
+  ASSERT_THAT(reading.ids(), ElementsAre("long", "good"));
+  EXPECT_EQ(reading.buildings[0].geometries.at(0).polygons.at(0).rings.at(0).size(),
+            positions.size() / 30);
+}
+
+TEST(BadCoordinates, OfTwoDimensionsAmongThreeAreAtHeightZeroOrAnIssue) {
+  const auto ring_of = [](const std::string& attribute, const std::string& positions) {
+    return "<gml:Polygon><gml:exterior><gml:LinearRing><gml:posList" + attribute + ">" + positions +
+           "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon>";
+  };
+  const Reading reading = read_text(
+      "mixed.gml",
+      city_model(building("flat", multi_surface(member(
+                                      ring_of(" srsDimension=\"2\"", "0 0 9 0 9 9 0 9 0 0")))) +
+                 building("solid", multi_surface(member(ring_of("", square(20, 0, 5))))) +
+                 building("odd", multi_surface(member(ring_of("", "0 0 9 0 9 9 0 9 0 0"))))));
+  ASSERT_FALSE(reading.error);
+  ASSERT_THAT(reading.ids(), ElementsAre("flat", "solid", "odd"));
+  ASSERT_EQ(reading.buildings[0].geometries.at(0).points.size(), 4u);
+  for (const Point3& point : reading.buildings[0].geometries[0].points)
+    EXPECT_EQ(point.z + reading.selection.origin.z, 0);
+  EXPECT_THAT(reading.buildings[1].source_issues, IsEmpty());
+  EXPECT_THAT(reading.buildings[2], HasIssue(issue_code::kUnreadableRing));
+}
+
 }  // namespace
 }  // namespace citymesh
