@@ -1,6 +1,7 @@
 #include "services/catalogue/unpack.h"
 
 #include <fmt/format.h>
+#include <stdlib.h>
 #include <xxhash.h>
 
 #include <array>
@@ -24,7 +25,7 @@ Error cannot(const char* what, const fs::path& path) {
   return fail(ErrorCode::Unavailable, fmt::format("cannot {} '{}'", what, path.string()));
 }
 
-Result<void> unpack_gzip(const fs::path& packed, const fs::path& copy, const ReadLimits& limits) {
+Result<void> copy_unpacked(const fs::path& packed, const fs::path& copy, const ReadLimits& limits) {
   auto bytes = ByteReader::open(packed, limits.max_file_bytes);
   if (!bytes) return bytes.error();
   std::ofstream file(copy, std::ios::binary | std::ios::trunc);
@@ -38,6 +39,14 @@ Result<void> unpack_gzip(const fs::path& packed, const fs::path& copy, const Rea
   }
   file.close();
   return file ? Result<void>() : Result<void>(cannot("write", copy));
+}
+
+Result<std::vector<FileRecord>> unpack_one(const FileRecord& file, const fs::path& folder,
+                                           const ReadLimits& limits) {
+  FileRecord unpacked = file;
+  unpacked.text = folder / "text";
+  if (auto done = copy_unpacked(file.path, unpacked.text, limits); !done) return done.error();
+  return std::vector{std::move(unpacked)};
 }
 
 }  // namespace
@@ -60,7 +69,13 @@ Result<std::string> content_hash(const fs::path& path) {
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
-Result<std::vector<FileRecord>> unpack(const FileRecord& file, const fs::path& folder,
+fs::path copies_of(const fs::path& state, const std::string& name,
+                   const std::string& content_hash) {
+  return state / "unpacked" /
+         fmt::format("{}-{:016x}", content_hash, XXH3_64bits(name.data(), name.size()));
+}
+
+Result<std::vector<FileRecord>> unpack(const FileRecord& file, const fs::path& copies,
                                        const ReadLimits& limits) {
   const auto archive = is_zip(file.path);
   if (!archive) return archive.error();
@@ -69,14 +84,21 @@ Result<std::vector<FileRecord>> unpack(const FileRecord& file, const fs::path& f
   if (!*archive && !*packed) return std::vector{file};
 
   std::error_code error;
-  fs::remove_all(folder, error);
-  fs::create_directories(folder, error);
-  if (error) return cannot("make", folder);
-  if (*archive) return unpack_archive(file, folder, limits);
-  FileRecord unpacked = file;
-  unpacked.text = folder / "text";
-  if (auto done = unpack_gzip(file.path, unpacked.text, limits); !done) return done.error();
-  return std::vector{unpacked};
+  fs::create_directories(copies.parent_path(), error);
+  std::string made = copies.string() + ".XXXXXX";
+  if (error || !::mkdtemp(made.data())) return cannot("make", copies);
+  auto files = *archive ? unpack_archive(file, made, limits) : unpack_one(file, made, limits);
+  if (!files) {
+    fs::remove_all(made, error);
+    return files;
+  }
+  fs::rename(made, copies, error);
+  if (error) {  // another process was faster, with the same content
+    fs::remove_all(made, error);
+    if (!fs::is_directory(copies, error)) return cannot("make", copies);
+  }
+  for (FileRecord& unpacked : *files) unpacked.text = copies / unpacked.text.filename();
+  return files;
 }
 
 }  // namespace citymesh::catalogue

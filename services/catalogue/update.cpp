@@ -16,12 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace source;
+using catalogue::copies_of;
 using catalogue::Database;
 using catalogue::KnownSource;
-
-fs::path copies_of(const fs::path& state, const std::string& hash) {
-  return state / "unpacked" / hash;
-}
 
 /// One pass over the folder.
 class Update {
@@ -74,7 +71,7 @@ class Update {
     const auto known = database_.find(name);
     database_.remove(name);
     std::error_code ignored;
-    if (known) fs::remove_all(copies_of(options_.state, known->hash), ignored);
+    if (known) fs::remove_all(copies_of(options_.state, name, known->hash), ignored);
   }
 
   Result<void> index(const FileRecord& file) {
@@ -92,7 +89,8 @@ class Update {
       }
     }
 
-    auto texts = catalogue::unpack(file, copies_of(options_.state, *hash), options_.source.limits);
+    auto texts = catalogue::unpack(file, copies_of(options_.state, file.name, *hash),
+                                   options_.source.limits);
     std::vector<FileScan> scans;
     if (texts) {
       for (FileRecord& text : *texts) {
@@ -118,7 +116,7 @@ class Update {
     }
     database_.replace(file.name, {*file.stamp, *hash}, scans);
     std::error_code ignored;
-    if (known) fs::remove_all(copies_of(options_.state, known->hash), ignored);
+    if (known) fs::remove_all(copies_of(options_.state, file.name, known->hash), ignored);
     return {};
   }
 

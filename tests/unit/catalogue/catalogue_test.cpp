@@ -228,5 +228,16 @@ TEST_F(Indexed, MembersOfArchivesAreFilesOfTheirOwn) {
   EXPECT_EQ(reading.input(0).file, "tiles.zip/a/north.gml");
 }
 
+TEST_F(Indexed, CopiesOfTheSameContentDoNotDependOnEachOther) {
+  const std::string text = tile({simple_building("a", 390010, 5820010)});
+  const auto first = documents_.add("first.gml.gz", text);
+  documents_.add("second.gml.gz", text);
+  EXPECT_EQ(update().indexed, 2u);
+  std::filesystem::remove(first);
+  const Reading reading = read();
+  EXPECT_FALSE(reading.error) << reading.error->message;
+  EXPECT_THAT(reading.ids(), ElementsAre("a"));
+}
+
 }  // namespace
 }  // namespace citymesh
