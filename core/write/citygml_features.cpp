@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -16,7 +17,7 @@ namespace citymesh {
 namespace {
 
 /// What an element of the schema takes.
-enum class Content { Text, Codes, Code, Date, DateTime, Year, Count, Height };
+enum class Content { Text, Codes, Code, Date, DateTime, Terrain, Water, Year, Count, Height };
 
 /// Where the schema has an attribute: before generic attributes, with those of buildings, with
 /// those of constructions.
@@ -35,6 +36,8 @@ constexpr std::array kAttributes2{
     StandardAttribute{"name", "gml:name", Content::Text, Place::Feature},
     StandardAttribute{"creationDate", "creationDate", Content::Date, Place::Feature},
     StandardAttribute{"terminationDate", "terminationDate", Content::Date, Place::Feature},
+    StandardAttribute{"relativeToTerrain", "relativeToTerrain", Content::Terrain, Place::Feature},
+    StandardAttribute{"relativeToWater", "relativeToWater", Content::Water, Place::Feature},
     StandardAttribute{"class", "bldg:class", Content::Code, Place::Building},
     StandardAttribute{"function", "bldg:function", Content::Codes, Place::Building},
     StandardAttribute{"usage", "bldg:usage", Content::Codes, Place::Building},
@@ -55,6 +58,8 @@ constexpr std::array kAttributes3{
     StandardAttribute{"name", "gml:name", Content::Text, Place::Feature},
     StandardAttribute{"creationDate", "creationDate", Content::DateTime, Place::Feature},
     StandardAttribute{"terminationDate", "terminationDate", Content::DateTime, Place::Feature},
+    StandardAttribute{"relativeToTerrain", "relativeToTerrain", Content::Terrain, Place::Feature},
+    StandardAttribute{"relativeToWater", "relativeToWater", Content::Water, Place::Feature},
     StandardAttribute{"dateOfConstruction", "con:dateOfConstruction", Content::Date,
                       Place::Construction},
     StandardAttribute{"dateOfDemolition", "con:dateOfDemolition", Content::Date,
@@ -103,8 +108,21 @@ bool has_form(std::string_view text, std::string_view form) {
 bool is_date(std::string_view text) {
   if (!has_form(text, "9999-99-99")) return false;
   const auto two = [&](std::size_t at) { return (text[at] - '0') * 10 + text[at + 1] - '0'; };
-  return text.substr(0, 4) != "0000" && two(5) >= 1 && two(5) <= 12 && two(8) >= 1 &&
-         two(8) <= 28;  // beyond, months differ
+  const std::chrono::year_month_day date(std::chrono::year(two(0) * 100 + two(2)),
+                                         std::chrono::month(static_cast<unsigned>(two(5))),
+                                         std::chrono::day(static_cast<unsigned>(two(8))));
+  return date.ok() && date.year() != std::chrono::year(0);
+}
+
+/// "entirelyAboveTerrain" and so on.
+bool is_relation_to(std::string_view what, std::string_view text) {
+  if (!text.ends_with(what)) return false;
+  text.remove_suffix(what.size());
+  for (const std::string_view known :
+       {"entirelyAbove", "substantiallyAbove", "substantiallyAboveAndBelow", "substantiallyBelow",
+        "entirelyBelow"})
+    if (text == known) return true;
+  return what == "WaterSurface" && text == "temporarilyAboveAndBelow";
 }
 
 /// The number that a text is, as XML Schema and we spell it.
@@ -137,6 +155,10 @@ bool fits(Content content, const AttributeValue& value, std::string_view text) {
       return is_text && text.size() == 19 && is_date(text.substr(0, 10)) &&
              has_form(text.substr(10), "T99:99:99") && text.substr(11, 2) < "24" &&
              text.substr(14, 2) < "60" && text.substr(17, 2) < "60";
+    case Content::Terrain:
+      return is_text && is_relation_to("Terrain", text);
+    case Content::Water:
+      return is_text && is_relation_to("WaterSurface", text);
     case Content::Year:
       return has_form(text, "9999") && text != "0000";
     case Content::Count: {

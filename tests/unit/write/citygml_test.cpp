@@ -182,6 +182,20 @@ TEST(CityGml3, IsUniqueInWhatAWallWithoutNeighbourOfAWindowGets) {
 
 /// With CITYMESH_SCHEMAS naming a folder of OGC's schemas (files `citygml2.xsd` and `citygml3.xsd`
 /// that import the building and generics modules), files are validated against them.
+TEST_P(BothVersions, HasDatesAndRelationsInTheElementsOfTheSchemaWhereTheyAreOnes) {
+  auto building = test::building("b_1", test::box(1, 1, 1));
+  const std::string time = GetParam() == "citygml3" ? "T00:00:00" : "";
+  building.attributes = {{"creationDate", "2014-07-31" + time},
+                         {"terminationDate", "2023-02-29" + time},
+                         {"relativeToTerrain", "entirelyAboveTerrain"},
+                         {"relativeToWater", "nearWater"}};
+  const std::string xml = encode(GetParam(), building);
+  EXPECT_THAT(xml, HasSubstr("<creationDate>2014-07-31" + time + "</creationDate>"));
+  EXPECT_THAT(xml, Not(HasSubstr("<terminationDate>"))) << "no such day";
+  EXPECT_THAT(xml, HasSubstr("<relativeToTerrain>entirelyAboveTerrain</relativeToTerrain>"));
+  EXPECT_THAT(xml, Not(HasSubstr("<relativeToWater>"))) << "not of the schema's list";
+}
+
 TEST(CityGml3, HasNoOpeningsInClosuresWhichAreNoSurfacesOfAConstruction) {
   auto building = test::rich_building();
   for (Body& body : building.bodies)
