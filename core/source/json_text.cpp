@@ -1,6 +1,7 @@
 #include "core/source/json_text.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <limits>
 #include <optional>
@@ -11,6 +12,13 @@ namespace {
 
 constexpr std::size_t kBuffer = 1u << 16;
 constexpr std::size_t kMaxKey = 1u << 16;  // bytes of a member's name or of a number
+
+// What matters to the nesting of values.
+constexpr std::array<bool, 256> kStructural = [] {
+  std::array<bool, 256> structural{};
+  for (const char c : {'"', '{', '}', '[', ']'}) structural[static_cast<unsigned char>(c)] = true;
+  return structural;
+}();
 
 bool is_blank(int c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; }
 
@@ -38,6 +46,16 @@ class JsonText::Cursor {
       c = peek();
     }
     return c;
+  }
+  /// To the next quote or bracket, or the end.
+  void skip_to_structure() {
+    do {
+      for (; at_ < filled_; ++at_) {
+        const auto c = static_cast<unsigned char>(buffer_[at_]);
+        if (kStructural[c]) return;
+        line_ += c == '\n';
+      }
+    } while (fill());
   }
   bool take(char wanted) {
     if (peek_solid() != wanted) return false;
@@ -108,6 +126,7 @@ template <class AnyCursor>
 Result<void> skip_value(AnyCursor& cursor, unsigned max_depth) {
   std::vector<char> open;  // closing brackets that are due
   do {
+    if (!open.empty()) cursor.skip_to_structure();
     const int c = cursor.peek_solid();
     if (c == AnyCursor::kEnd) return syntax_error(cursor, "a value");
     if (c == '"') {
@@ -126,11 +145,10 @@ Result<void> skip_value(AnyCursor& cursor, unsigned max_depth) {
                             open.empty() ? "a value" : std::string("'") + open.back() + "'");
       cursor.advance();
       open.pop_back();
-    } else if (open.empty() && (c == ',' || c == ':')) {
+    } else if (c == ',' || c == ':') {
       return syntax_error(cursor, "a value");
     } else {
       cursor.advance();
-      if (!open.empty()) continue;
       for (int next = cursor.peek();
            next >= 0 && !is_blank(next) && next != ',' && next != '}' && next != ']';
            next = cursor.peek())

@@ -306,7 +306,8 @@ Result<void> Database::buildings(std::int64_t file, const RecordQuery& query,
   if (query.box) {
     auto rows = connection_.query(
         "SELECT " CITYMESH_BUILDING_COLUMNS
-        " FROM building_box x JOIN building b ON b.id = x.id WHERE x.min_x <= ?1 AND x.max_x >= ?2 "
+        " FROM building_box x CROSS JOIN building b ON b.id = x.id WHERE x.min_x <= ?1 AND x.max_x "
+        ">= ?2 "
         "AND x.min_y <= ?3 AND x.max_y >= ?4 AND x.id BETWEEN ?5 AND ?6 ORDER BY x.id");
     rows.bind(1, query.box->max.x).bind(2, query.box->min.x);
     rows.bind(3, query.box->max.y).bind(4, query.box->min.y);
