@@ -65,6 +65,12 @@ struct FileRecord {
 /// A box in the coordinates of a file.
 struct FlatBox {
   Point2 min{}, max{};
+
+  /// Touching counts; an empty extent meets nothing.
+  bool meets(const Box3& extent) const {
+    return extent.min.x <= max.x && extent.max.x >= min.x && extent.min.y <= max.y &&
+           extent.max.y >= min.y;
+  }
 };
 
 /// Which buildings of a file are asked for; both conditions must hold.

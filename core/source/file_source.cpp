@@ -73,18 +73,13 @@ class ScannedFiles final : public Catalogue {
                          const RecordSink& sink) override {
     const auto& scan = static_cast<const FileScan&>(file);  // files() gives nothing else
     for (const BuildingRecord& building : scan.records) {
-      if (query.box && !meets(building.extent, *query.box)) continue;
+      if (query.box && !query.box->meets(building.extent)) continue;
       if (auto taken = sink(building); !taken) return taken;
     }
     return {};
   }
 
  private:
-  static bool meets(const Box3& extent, const FlatBox& box) {
-    return extent.min.x <= box.max.x && extent.max.x >= box.min.x && extent.min.y <= box.max.y &&
-           extent.max.y >= box.min.y;
-  }
-
   /// Archives are replaced by their members, unpacked once. One that cannot be unpacked stays, to
   /// be reported as a file that cannot be read.
   Result<std::vector<FileRecord>> unpacked(std::vector<FileRecord> files) {

@@ -75,18 +75,12 @@ Result<BuildingRecord> building_of(const Query& row, bool with_footprint) {
   return building;
 }
 
-bool meets(const Box3& extent, const FlatBox& box) {
-  return extent.min.x <= box.max.x && extent.max.x >= box.min.x && extent.min.y <= box.max.y &&
-         extent.max.y >= box.min.y;
-}
-
 Result<void> deliver(Query& rows, const RecordQuery& query, const RecordSink& sink) {
   while (rows.step()) {
     auto building = building_of(rows, query.with_footprints);
     if (!building) return building.error();
     // The tree keeps float32: what it finds is tested again.
-    if (query.box && (building->extent.is_empty() || !meets(building->extent, *query.box)))
-      continue;
+    if (query.box && !query.box->meets(building->extent)) continue;
     if (auto taken = sink(*building); !taken) return taken;
   }
   return {};
