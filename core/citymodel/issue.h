@@ -1,15 +1,19 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
+
+#include "core/geometry/point.h"
 
 namespace citymesh {
 
 /// A defect of the input: val3dity's numbers (101 … 601), own codes as 10101 for C101 and up.
 struct Issue {
   int code = 0;
-  std::string where{};    ///< gml_id of polygon or surface, ring number, coordinates
-  double measured = 0.0;  ///< what the check measured, 0 where it measures nothing
+  std::string where{};         ///< gml_id of polygon or surface, ring number, coordinates
+  double measured = 0.0;       ///< what the check measured, 0 where it measures nothing
+  std::optional<Point3> at{};  ///< where it is best seen, metres from the local origin
 };
 
 /// A change made to the geometry.
@@ -17,6 +21,7 @@ struct Repair {
   std::string kind{};
   std::string where{};
   double displacement_m = 0.0;
+  std::optional<Point3> at{};  ///< as in Issue
 };
 
 inline constexpr int kOwnIssueBase = 10000;  ///< Issue::code of C101 is 10101

@@ -26,7 +26,8 @@ struct Body {
   std::string name{};    ///< file-safe, unique in the run
   std::string gml_id{};  ///< of the Building or BuildingPart
   ObjectKind kind = ObjectKind::Building;
-  std::string lod{};  ///< of the geometry it was made from: "2", "1.2"; "" where nothing is known
+  std::string rung{};  ///< of this body: as_is, healed …
+  std::string lod{};   ///< of the geometry it was made from: "2", "1.2"; "" where nothing is known
   Attributes attributes{};
   std::vector<Address> addresses{};
   TriangleMesh mesh{};

@@ -9,6 +9,7 @@
 #include "core/gates/gates.h"
 #include "core/geometry/box_tree.h"
 #include "core/geometry/measure.h"
+#include "core/geometry/place.h"
 #include "core/geometry/predicates.h"
 
 namespace citymesh {
@@ -21,11 +22,6 @@ struct HalfEdge {
   std::uint32_t face;
   bool forward;  ///< the face walks low → high
 };
-
-std::string place(const GridPoint& p) {
-  const Point3 m = to_metres(p);
-  return fmt::format("({:.4f} {:.4f} {:.4f})", m.x, m.y, m.z);
-}
 
 /// Counts what violates a gate and keeps the first place.
 class Finding {
@@ -79,13 +75,13 @@ class ShellCheck {
     Finding range("G13");
     for (const GridPoint& p : points_)
       if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > kGridLimit)
-        range.add([&] { return place(p); });
+        range.add([&] { return place_text(p); });
     range.append_to(failures);
     if (range.any()) return failures;  // beyond it the predicates are not exact
 
     Finding degenerate("G5");
     for (const Triangle& f : faces_)
-      if (is_degenerate(f)) degenerate.add([&] { return place(points_[f[0]]); });
+      if (is_degenerate(f)) degenerate.add([&] { return place_text(points_[f[0]]); });
     check_edges(failures);
     check_fans_and_euler(failures);
     degenerate.append_to(failures);
@@ -123,7 +119,7 @@ class ShellCheck {
     UnionFind faces(faces_.size());
     for_each_edge([&](std::span<const HalfEdge> edge) {
       const auto where = [&] {
-        return place(points_[edge[0].low]) + "–" + place(points_[edge[0].high]);
+        return place_text(points_[edge[0].low]) + "–" + place_text(points_[edge[0].high]);
       };
       if (edge[0].low == edge[0].high) return;
       if (edge.size() == 1) open.add(where);
@@ -164,7 +160,7 @@ class ShellCheck {
           fan[v] = root;
           ++euler[component_[f]];
         } else if (fan[v] != root) {
-          pinched.add([&] { return "vertex " + place(points_[v]); });
+          pinched.add([&] { return "vertex " + place_text(points_[v]); });
         }
       }
     }
@@ -173,7 +169,7 @@ class ShellCheck {
       if (characteristic > 2 || characteristic % 2 != 0)
         odd.add([&, component = component, characteristic = characteristic] {
           return fmt::format("V - E + F = {} at {}", characteristic,
-                             place(points_[faces_[component][0]]));
+                             place_text(points_[faces_[component][0]]));
         });
     pinched.append_to(failures);
     if (!pinched.any()) odd.append_to(failures);
@@ -203,7 +199,7 @@ class ShellCheck {
         if (other_id != id && other.box.meets(GridBox::of(corner)) && encloses(other.faces, corner))
           ++depth;
       const Int128 volume = volume6(points_, component.faces);
-      const auto where = [&] { return place(corner); };
+      const auto where = [&] { return place_text(corner); };
       if (depth % 2 == 0 && volume <= 0) inward.add(where);
       if (depth % 2 == 1 && volume >= 0) interior.add(where);
     }
@@ -247,7 +243,7 @@ class ShellCheck {
     Finding duplicate("G8");
     for (std::size_t i = 1; i < keys.size(); ++i)
       if (keys[i].first == keys[i - 1].first)
-        duplicate.add([&] { return place(points_[keys[i].first[0]]); });
+        duplicate.add([&] { return place_text(points_[keys[i].first[0]]); });
     duplicate.append_to(failures);
   }
 
@@ -266,7 +262,8 @@ class ShellCheck {
       tree.for_each_meeting(boxes[f], [&](std::uint32_t other) {
         if (other > f && triangles_clash(corners(f), corners(other)))
           clash.add([&] {
-            return place(points_[faces_[f][0]]) + " and " + place(points_[faces_[other][0]]);
+            return place_text(points_[faces_[f][0]]) + " and " +
+                   place_text(points_[faces_[other][0]]);
           });
       });
     clash.append_to(failures);
@@ -292,7 +289,7 @@ class ShellCheck {
           found = position > 0 && position < 1;
         }
       });
-      if (found) junction.add([&] { return place(points_[v]); });
+      if (found) junction.add([&] { return place_text(points_[v]); });
     }
     junction.append_to(failures);
   }

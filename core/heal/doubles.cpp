@@ -46,8 +46,7 @@ void drop_double_triangles(Shell& shell, StepContext& context) {
       gone[copy.face].resize(triangles[copy.face].size(), 0);
       gone[copy.face][copy.triangle] = 1;
     }
-    context.note(inner ? "inner_face_dropped" : "duplicate_face_dropped",
-                 describe(shell.points[key[0]]));
+    context.note(inner ? "inner_face_dropped" : "duplicate_face_dropped", shell.points[key[0]]);
   }
   std::vector<Face> kept;
   for (std::uint32_t f = 0; f < shell.faces.size(); ++f) {

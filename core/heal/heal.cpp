@@ -1,7 +1,5 @@
 #include "core/heal/heal.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,8 +8,10 @@
 #include "core/citymodel/edges.h"
 #include "core/citymodel/grid.h"
 #include "core/geometry/box_tree.h"
+#include "core/geometry/place.h"
 #include "core/geometry/triangulation.h"
 #include "core/heal/steps.h"
+#include "core/reconstruct/reconstruct.h"
 #include "core/validate/validate.h"
 
 namespace citymesh {
@@ -156,6 +156,15 @@ std::string lane_of(const Shell& shell) {
   return "2.5d";
 }
 
+/// The rungs between `healed` and the block, best first; each takes the same input anew.
+struct Rebuild {
+  std::string_view rung;
+  Reconstruction reconstruct;
+};
+const std::vector<Rebuild> kRebuilds{
+    // {"rebuilt_2_5d", rebuild_2_5d}, {"rebuilt_3d", rebuild_3d}, {"wrapped", wrap}
+};
+
 class Ladder {
  public:
   Ladder(const Building& building, const HealOptions& options, const DeliveryGate& gate,
@@ -170,6 +179,7 @@ class Ladder {
     }
     result_.lod = geometries[0]->lod;
     std::optional<Gridded> first;
+    std::vector<Gridded> rebuildable;
     for (const Geometry* geometry : geometries) {
       auto gridded = grid(building_, *geometry);
       if (const Issue* issue = std::get_if<Issue>(&gridded)) {
@@ -186,7 +196,11 @@ class Ladder {
       if (geometry->footprint) continue;
       if (try_as_is(input) || try_healed(input)) return std::move(result_);
       if (context_.stopped()) break;
+      rebuildable.push_back(std::move(input));
     }
+    for (const Rebuild& rebuild : kRebuilds)
+      for (const Gridded& input : rebuildable)
+        if (try_rebuilt(rebuild.rung, rebuild.reconstruct, input)) return std::move(result_);
     if (!first)
       result_.reason = "no_geometry";
     else if (!try_block(*first, geometries[0]->footprint) && result_.reason.empty())
@@ -211,11 +225,7 @@ class Ladder {
   bool try_healed(const Gridded& input) {
     const bool has_openings = std::any_of(input.shell.faces.begin(), input.shell.faces.end(),
                                           [](const Face& face) { return is_opening(face.type); });
-    std::vector<double> tolerances_m{options_.snap_tolerance_m};
-    for (const double wider : kWiderTolerances_m)
-      if (wider > options_.snap_tolerance_m && wider <= options_.max_displacement_m)
-        tolerances_m.push_back(wider);
-    for (const double tolerance_m : tolerances_m)
+    for (const double tolerance_m : tolerances_m())
       for (int without_openings = 0; without_openings <= (has_openings ? 1 : 0);
            ++without_openings) {
         if (context_.stopped()) return false;
@@ -239,6 +249,30 @@ class Ladder {
         return deliver("healed", std::move(shell));
       }
     return false;
+  }
+
+  /// A rung that builds the boundary anew, with growing tolerances.
+  bool try_rebuilt(std::string_view rung, Reconstruction reconstruct, const Gridded& input) {
+    for (const double tolerance_m : tolerances_m()) {
+      if (context_.stopped()) return false;
+      std::optional<Shell> shell = reconstruct(input.shell, {tolerance_m}, context_);
+      if (!shell || shell->faces.empty()) continue;
+      type_faces(*shell);
+      if (!gate_(*shell).empty()) continue;
+      result_.deviation = deviation_between(input.shell, *shell);
+      result_.max_displacement_m = input.max_displacement_m;
+      result_.repairs = {{std::string(rung), building_.gml_id, result_.deviation.max_m}};
+      return deliver(std::string(rung), std::move(*shell));
+    }
+    return false;
+  }
+
+  std::vector<double> tolerances_m() const {
+    std::vector<double> tolerances_m{options_.snap_tolerance_m};
+    for (const double wider : kWiderTolerances_m)
+      if (wider > options_.snap_tolerance_m && wider <= options_.max_displacement_m)
+        tolerances_m.push_back(wider);
+    return tolerances_m;
   }
 
   bool try_block(const Gridded& input, bool footprint_only) {
@@ -277,9 +311,9 @@ void StepContext::note(std::string kind, std::string where, double displacement_
   repairs.push_back({std::move(kind), std::move(where), displacement_m});
 }
 
-std::string describe(const GridPoint& p) {
-  const Point3 m = to_metres(p);
-  return fmt::format("({:.4f} {:.4f} {:.4f})", m.x, m.y, m.z);
+void StepContext::note(std::string kind, const GridPoint& at, double displacement_m) {
+  note(std::move(kind), place_text(at), displacement_m);
+  repairs.back().at = to_metres(at);
 }
 
 Healed heal(const Building& building, std::span<const Lod> lod, const HealOptions& options,

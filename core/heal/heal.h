@@ -19,6 +19,7 @@ struct HealOptions {
   double planarity_tolerance_m =
       0.01;                          ///< largest distance of a corner to the plane of a closed hole
   double max_displacement_m = 0.10;  ///< limit of rung `healed`; beyond it the next rung is tried
+  double max_hole_area_m2 = 10000;   ///< larger holes are not closed on rung `healed`
   bool block_on_failure = true;      ///< whether rung `lod1_block` may be used
 };
 

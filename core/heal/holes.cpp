@@ -182,7 +182,7 @@ void close_holes(Shell& shell, StepContext& context) {
     constexpr double kGroundSlope = 0.17;  // within 10 degrees of the vertical it is no ground
     faces[i].type = planes[i].normal.z < -kGroundSlope ? SurfaceType::GroundSurface
                                                        : SurfaceType::ClosureSurface;
-    context.note("hole_closed", describe(shell.points[planar[i][0]]));
+    context.note("hole_closed", shell.points[planar[i][0]]);
     faces[i].added = true;
     shell.faces.push_back(std::move(faces[i]));
   }

@@ -55,8 +55,7 @@ void insert_junctions(Shell& shell, StepContext& context) {
         for (const Junction& junction : junctions) {
           result.push_back(junction.vertex);
           if (noted.insert(junction.vertex).second)
-            context.note("t_junction", describe(shell.points[junction.vertex]),
-                         junction.distance_m);
+            context.note("t_junction", shell.points[junction.vertex], junction.distance_m);
         }
       }
       ring = std::move(result);

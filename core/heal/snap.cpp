@@ -49,7 +49,7 @@ void snap_points(Shell& shell, StepContext& context) {
     if (nearest == i) {
       representatives.emplace(key_of(cell(p.x), cell(p.y), cell(p.z)), i);
     } else {
-      context.note("snapped", describe(p), nearest_m);
+      context.note("snapped", p, nearest_m);
     }
   }
   for (Face& face : shell.faces)

@@ -18,6 +18,7 @@ struct StepContext {
   double max_displacement_m = 0;
 
   void note(std::string kind, std::string where, double displacement_m = 0);
+  void note(std::string kind, const GridPoint& at, double displacement_m = 0);
 };
 
 // Every step takes a shell that may be defective and leaves one that is no worse. Order matters:
@@ -58,7 +59,5 @@ struct Blocks {
 };
 Blocks lod1_blocks(const Shell& shell, bool footprint_only,
                    std::optional<double> measured_height_m);
-
-std::string describe(const GridPoint& p);  ///< "(x y z)" in metres from the origin
 
 }  // namespace citymesh

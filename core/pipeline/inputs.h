@@ -22,6 +22,8 @@ struct Inputs {
   double snap_tolerance_m = 0.001;
   double planarity_tolerance_m = 0.01;
   double max_displacement_m = 0.1;
+  double max_hole_area_m2 = 10000;
+  bool merge_parts = false;  ///< parts that touch or overlap become one body
 };
 
 /// Reads what canonical_inputs() has checked and completed. Errors: InvalidArgument for values that

@@ -18,7 +18,8 @@
 namespace citymesh {
 namespace {
 
-constexpr std::array<std::string_view, 3> kRungs{"as_is", "healed", "lod1_block"};  // best first
+constexpr std::array<std::string_view, 7> kRungs{
+    "as_is", "healed", "rebuilt_2_5d", "rebuilt_3d", "reconstructed", "wrapped", "lod1_block"};
 
 std::size_t rung_rank(std::string_view rung) {
   return static_cast<std::size_t>(std::find(kRungs.begin(), kRungs.end(), rung) - kRungs.begin());
@@ -132,7 +133,8 @@ ProcessedPart process_part(const Building& building, const std::string& name, co
   // A block stands on the ground: no stand-in for a balcony or a chimney.
   const bool installation = building.kind == ObjectKind::BuildingInstallation;
   const HealOptions options{inputs.snap_tolerance_m, inputs.planarity_tolerance_m,
-                            inputs.max_displacement_m, inputs.block_on_failure && !installation};
+                            inputs.max_displacement_m, inputs.max_hole_area_m2,
+                            inputs.block_on_failure && !installation};
   Healed healed = heal(building, inputs.lod, options, std::ref(gate), context);
 
   ProcessedPart processed;
@@ -164,6 +166,7 @@ ProcessedPart process_part(const Building& building, const std::string& name, co
   body.name = name;
   body.gml_id = building.gml_id;
   body.kind = building.kind;
+  body.rung = report.rung;
   body.lod = report.lod;
   body.attributes = building.attributes;
   body.addresses = building.addresses;

@@ -7,15 +7,11 @@
 #include <set>
 
 #include "core/citymodel/edges.h"
+#include "core/geometry/place.h"
 #include "core/geometry/triangulation.h"
 
 namespace citymesh {
 namespace {
-
-std::string place(const GridPoint& p) {
-  const Point3 m = to_metres(p);
-  return fmt::format("({:.4f} {:.4f} {:.4f})", m.x, m.y, m.z);
-}
 
 /// Largest distance of a corner to the plane through the corners' mean along Newell's normal.
 double distance_to_plane_m(const Shell& shell, const Face& face) {
@@ -56,7 +52,7 @@ void check_face(const Shell& shell, const Face& face, const ValidateOptions& opt
     }
     for (std::size_t i = 0; i < ring.size(); ++i)
       if (ring[i] == ring[(i + 1) % ring.size()]) {
-        issues.push_back({102, where + " " + place(shell.points[ring[i]]), 0});
+        issues.push_back({102, where + " " + place_text(shell.points[ring[i]]), 0});
         rings_usable = false;
         break;
       }
@@ -94,7 +90,8 @@ std::vector<Issue> validate(const Shell& shell, const ValidateOptions& options) 
                                                           : nullptr;
     if (!defect) continue;
     if (defect->count++ == 0)
-      defect->where = place(shell.points[edge.first]) + "–" + place(shell.points[edge.second]);
+      defect->where =
+          place_text(shell.points[edge.first]) + "–" + place_text(shell.points[edge.second]);
   }
   for (const Defect& defect : defects)
     if (defect.count > 0) issues.push_back({defect.code, defect.where, defect.count});

@@ -38,6 +38,20 @@ class Members {
   bool first_ = true;
 };
 
+void append_point(std::string& json, const Point3& p) {
+  json += '[';
+  append_number(json, p.x, 4);
+  json += ", ";
+  append_number(json, p.y, 4);
+  json += ", ";
+  append_number(json, p.z, 4);
+  json += ']';
+}
+
+void append_place(Members& members, const std::optional<Point3>& at) {
+  if (at) append_point(members.key("at"), *at);
+}
+
 void append_issues(std::string& json, const std::vector<Issue>& issues) {
   json += '[';
   for (std::size_t i = 0; i < issues.size(); ++i) {
@@ -47,6 +61,7 @@ void append_issues(std::string& json, const std::vector<Issue>& issues) {
     members.text("name", bare_issue_name(issues[i].code));
     members.text("where", issues[i].where);
     members.number("measured", issues[i].measured);
+    append_place(members, issues[i].at);
     json += '}';
   }
   json += ']';
@@ -72,6 +87,7 @@ void append_part_members(Members& members, const PartReport& part) {
     repair.text("kind", part.repairs[i].kind);
     repair.text("where", part.repairs[i].where);
     repair.number("displacement_m", part.repairs[i].displacement_m);
+    append_place(repair, part.repairs[i].at);
     json += '}';
   }
   json += ']';
@@ -100,16 +116,6 @@ void append_histogram(std::string& json,
   Members members(json, ", ");
   for (const auto& [name, count] : histogram) members.count(name, count);
   json += '}';
-}
-
-void append_point(std::string& json, const Point3& p) {
-  json += '[';
-  append_number(json, p.x, 4);
-  json += ", ";
-  append_number(json, p.y, 4);
-  json += ", ";
-  append_number(json, p.z, 4);
-  json += ']';
 }
 
 constexpr std::string_view kNextLine = ",\n  ";
