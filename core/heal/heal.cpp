@@ -11,6 +11,8 @@
 #include "core/geometry/place.h"
 #include "core/geometry/triangulation.h"
 #include "core/heal/steps.h"
+#include "core/reconstruct/lane.h"
+#include "core/reconstruct/rebuild_2_5d.h"
 #include "core/reconstruct/reconstruct.h"
 #include "core/validate/validate.h"
 
@@ -121,48 +123,14 @@ bool is_closed(const Shell& shell) {
   });
 }
 
-/// 2.5D: seen from above, no two upward faces overlap.
-std::string lane_of(const Shell& shell) {
-  std::vector<std::array<GridPoint2, 3>> roofs;
-  std::vector<GridBox> boxes;
-  for (const Triangle& t : triangles_of(shell)) {
-    const std::array<GridPoint2, 3> flat{project(shell.points[t[0]], Axis::Z),
-                                         project(shell.points[t[1]], Axis::Z),
-                                         project(shell.points[t[2]], Axis::Z)};
-    if (orient2d(flat[0], flat[1], flat[2]) <= 0) continue;
-    GridBox box = GridBox::of({flat[0].x, flat[0].y, 0});
-    for (const GridPoint2& p : flat) box.add(GridPoint{p.x, p.y, 0});
-    roofs.push_back(flat);
-    boxes.push_back(box);
-  }
-  // Interiors of two counter-clockwise triangles are disjoint when an edge of one has the other
-  // wholly on its right.
-  const auto separates = [](const auto& s, const auto& t) {
-    for (std::size_t i = 0; i < 3; ++i)
-      if (std::all_of(t.begin(), t.end(),
-                      [&](const GridPoint2& p) { return orient2d(s[i], s[(i + 1) % 3], p) <= 0; }))
-        return true;
-    return false;
-  };
-  const BoxTree tree(boxes);
-  for (std::uint32_t i = 0; i < roofs.size(); ++i) {
-    bool overlap = false;
-    tree.for_each_meeting(boxes[i], [&](std::uint32_t j) {
-      overlap =
-          overlap || (j > i && !separates(roofs[i], roofs[j]) && !separates(roofs[j], roofs[i]));
-    });
-    if (overlap) return "3d";
-  }
-  return "2.5d";
-}
-
 /// The rungs between `healed` and the block, best first; each takes the same input anew.
 struct Rebuild {
   std::string_view rung;
   Reconstruction reconstruct;
 };
 const std::vector<Rebuild> kRebuilds{
-    // {"rebuilt_2_5d", rebuild_2_5d}, {"rebuilt_3d", rebuild_3d}, {"wrapped", wrap}
+    {"rebuilt_2_5d", rebuild_2_5d},
+    // {"rebuilt_3d", rebuild_3d}, {"wrapped", wrap}
 };
 
 class Ladder {

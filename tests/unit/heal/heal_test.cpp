@@ -251,7 +251,9 @@ TEST(Heal, FootprintsThatTouchInACornerBecomeSeparateBlocks) {
   Draw draw;
   draw.face(SurfaceType::GroundSurface, {rectangle(0, 0, 5, 5)});
   draw.face(SurfaceType::GroundSurface, {rectangle(5, 5, 10, 10)});
-  draw.face(SurfaceType::RoofSurface, {rectangle(0, 0, 10, 10, 6)});
+  draw.geometry().lod = {0, -1};
+  draw.geometry().footprint = true;
+  draw.building().attributes.emplace_back("measuredHeight", 6.0);
   const auto healed = heal(draw.done());
   EXPECT_EQ(healed.rung, "lod1_block");
   EXPECT_NEAR(volume_m3(healed), 300, 1);
