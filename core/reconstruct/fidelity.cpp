@@ -15,15 +15,33 @@ namespace {
 constexpr double kSameWall_m = 0.1;   ///< how far a wall may stand from the one it continues
 constexpr double kKept_m = 0.1;       ///< pieces of the input this close to the result are kept
 constexpr double kCrumb_m2 = 0.1;     ///< what may be lost
+constexpr std::int64_t kReach = 500;  ///< walls this close to each other join, in steps
+constexpr double kFinShare = 0.3;     ///< of all area, what walls may have that enclose nothing
 constexpr double kCrumbShare = 0.01;  ///< of all area; the larger of the two counts
 
-/// Triangles of a face; of rings that cross, a fan.
+/// Triangles of a face; none of rings that cross, whose shape nobody knows.
 std::vector<Triangle> triangles_of(const Shell& shell, const Face& face) {
+  auto triangles = triangulate(shell.points, face.rings);
+  return triangles ? std::move(*triangles) : std::vector<Triangle>{};
+}
+
+/// Triangles of a face; of rings that cross, a fan.
+std::vector<Triangle> sheet_of(const Shell& shell, const Face& face) {
   if (auto triangles = triangulate(shell.points, face.rings)) return std::move(*triangles);
   std::vector<Triangle> fan;
   const Ring& ring = face.rings[0];
   for (std::size_t i = 1; i + 1 < ring.size(); ++i) fan.push_back({ring[0], ring[i], ring[i + 1]});
   return fan;
+}
+
+/// Whether lines seen from above enclose an area worth its name.
+bool encloses_area(const std::vector<PartitionLine>& lines) {
+  constexpr std::size_t kMaxLines = 2000;
+  const auto divided = divide(lines, kReach, kMaxLines);
+  if (!divided) return true;
+  double area_m2 = 0;
+  for (std::size_t c = 1; c < divided->cells.size(); ++c) area_m2 += divided->cells[c].area_m2;
+  return area_m2 > kCrumb_m2;
 }
 
 GridPoint middle(const GridPoint& a, const GridPoint& b, const GridPoint& c) {
@@ -80,7 +98,7 @@ void name_walls(Shell& result, const Shell& input, std::span<const std::uint32_t
   std::vector<std::uint32_t> face_of;
   std::vector<GridBox> boxes;
   for (const std::uint32_t f : vertical)
-    for (const Triangle& t : triangles_of(input, input.faces[f])) {
+    for (const Triangle& t : sheet_of(input, input.faces[f])) {
       triangles.push_back(t);
       face_of.push_back(f);
       boxes.push_back(box_of(input.points, t));
@@ -120,7 +138,7 @@ void name_walls(Shell& result, const Shell& input, std::span<const std::uint32_t
   }
 }
 
-bool is_faithful(const Shell& result, const Shell& input, std::span<const char> ignored) {
+bool is_faithful(const Shell& result, const Shell& input, std::span<const FaceRole> roles) {
   std::vector<Triangle> after;
   for (const Face& face : result.faces) {
     const auto triangles = triangles_of(result, face);
@@ -128,9 +146,11 @@ bool is_faithful(const Shell& result, const Shell& input, std::span<const char> 
   }
   const DistanceField field(result.points, after);
   const Inside inside(result.points, after);
-  double total_m2 = 0, lost_m2 = 0;
+  double total_m2 = 0, lost_m2 = 0, lost_walls_m2 = 0;
+  std::vector<PartitionLine> lost_walls;
   for (std::size_t f = 0; f < input.faces.size(); ++f) {
-    if (ignored[f]) continue;
+    if (roles[f] == FaceRole::Ignored) continue;
+    double face_lost_m2 = 0;
     for (const Triangle& t : triangles_of(input, input.faces[f])) {
       const GridPoint &a = input.points[t[0]], &b = input.points[t[1]], &c = input.points[t[2]];
       const double triangle_m2 = area_m2(input.points, std::span(&t, 1));
@@ -146,10 +166,20 @@ bool is_faithful(const Shell& result, const Shell& input, std::span<const char> 
                                middle(c, a, m)};
       for (const GridPoint& p : samples)
         if (field.distance_m(p) > kKept_m && !inside(p))
-          lost_m2 += triangle_m2 / static_cast<double>(samples.size());
+          face_lost_m2 += triangle_m2 / static_cast<double>(samples.size());
+    }
+    if (face_lost_m2 <= 0) continue;
+    if (roles[f] == FaceRole::Vertical) {
+      lost_walls_m2 += face_lost_m2;
+      lost_walls.push_back(seen_from_above(input, input.faces[f]));
+    } else {
+      lost_m2 += face_lost_m2;
     }
   }
-  return lost_m2 <= std::max(kCrumb_m2, kCrumbShare * total_m2);
+  const double crumbs_m2 = std::max(kCrumb_m2, kCrumbShare * total_m2);
+  if (lost_m2 > crumbs_m2) return false;
+  return lost_m2 + lost_walls_m2 <= crumbs_m2 ||
+         (lost_walls_m2 <= kFinShare * total_m2 && !encloses_area(lost_walls));
 }
 
 }  // namespace citymesh

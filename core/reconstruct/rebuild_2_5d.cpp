@@ -11,6 +11,7 @@
 #include "core/reconstruct/fidelity.h"
 #include "core/reconstruct/level.h"
 #include "core/reconstruct/partition.h"
+#include "core/reconstruct/roles.h"
 #include "core/reconstruct/tidy.h"
 
 namespace citymesh {
@@ -21,68 +22,14 @@ constexpr std::int64_t kClearance = 20;   ///< twice what the gates take for tou
 constexpr double kSliver_m = 0.02;        ///< narrower cells join a neighbour
 constexpr std::int64_t kHalfNotch = 100;  ///< of the square cut out where columns meet in a line
 constexpr int kRounds = 8;
-constexpr double kSteepest = 0.05;        ///< normal z of what may count as vertical
-constexpr double kMaxLean = 500;          ///< how far it may lean
-constexpr double kFlat = 0.5;             ///< normal z of what is no wall, however narrow
 constexpr std::int64_t kSameLayer = 500;  ///< faces closer above each other are one layer
 constexpr double kMaxAir_m2 = 0.5;        ///< of space between faces above each other
 constexpr double kMostOf = 0.6;           ///< of what a continued plane has to meet
 
-enum class Role : std::uint8_t {
-  Ignored,  ///< inside the building, or no face at all
-  Vertical,
-  Up,    ///< told by its type: bounds from above
-  Down,  ///< told by its type: bounds from below
-  Either
-};
-
-Role role_of(const Shell& shell, const Face& face, std::int64_t tolerance) {
-  switch (face.type) {
-    case SurfaceType::InteriorWallSurface:
-    case SurfaceType::CeilingSurface:
-    case SurfaceType::FloorSurface:
-      return Role::Ignored;
-    default:
-      break;
-  }
-  if (face.rings.empty() || face.rings[0].size() < 3) return Role::Ignored;
-  GridBox box = GridBox::of(shell.points[face.rings[0][0]]);
-  for (const std::uint32_t v : face.rings[0]) box.add(shell.points[v]);
-  const double extent = std::hypot(static_cast<double>(box.max.x - box.min.x),
-                                   static_cast<double>(box.max.y - box.min.y));
-  if (extent == 0) return Role::Vertical;
-  // The normal of a ring that crosses itself says little: then all of its sheet counts.
-  Point3 sum{}, sheet{};
-  for (std::size_t i = 1; i + 1 < face.rings[0].size(); ++i) {
-    const Point3 n = normal_of(shell.points[face.rings[0][0]], shell.points[face.rings[0][i]],
-                               shell.points[face.rings[0][i + 1]]);
-    sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z};
-    sheet = {sheet.x + std::abs(n.x), sheet.y + std::abs(n.y), sheet.z + std::abs(n.z)};
-  }
-  const auto length = [](const Point3& n) { return std::hypot(n.x, n.y, n.z); };
-  const Point3 normal = length(sum) > 0.1 * length(sheet) ? sum : sheet;
-  if (length(normal) == 0) return Role::Ignored;
-  const double upright = std::abs(normal.z) / length(normal),
-               width = std::abs(normal.z) / 2 / extent;
-  if (upright < kSteepest ? width <= kMaxLean
-                          : upright < kFlat && width <= static_cast<double>(tolerance))
-    return Role::Vertical;
-  switch (face.type) {
-    case SurfaceType::RoofSurface:
-    case SurfaceType::OuterFloorSurface:
-      return Role::Up;
-    case SurfaceType::GroundSurface:
-    case SurfaceType::OuterCeilingSurface:
-      return Role::Down;
-    default:
-      return Role::Either;
-  }
-}
-
 class Rebuild {
  public:
   Rebuild(const Shell& input, const ReconstructOptions& options, const RunContext& context)
-      : input_(input),
+      : input_(with_clean_rings(input)),
         context_(context),
         tolerance_(std::max(kClearance, static_cast<std::int64_t>(std::llround(
                                             options.tolerance_m * kGridStepsPerMetre)))) {}
@@ -123,7 +70,7 @@ class Rebuild {
       shell.surface_ids = input_.surface_ids;
       name_walls(shell, input_, vertical_);
       tidy(shell);
-      if (!is_faithful(shell, input_, ignored_)) return {};
+      if (!is_faithful(shell, input_, roles_)) return {};
       return shell;
     }
     return {};
@@ -139,15 +86,15 @@ class Rebuild {
   void read_faces() {
     for (std::uint32_t f = 0; f < input_.faces.size(); ++f) {
       const Face& face = input_.faces[f];
-      const Role role = role_of(input_, face, tolerance_);
+      const FaceRole role = role_of(input_, face, tolerance_);
       roles_.push_back(role);
       up_.push_back(face.rings.empty() ? 0.0 : ring_normal(input_.points, face.rings[0]).z);
       looks_.push_back({face.type, face.source, face.added});
-      levels_.push_back(role == Role::Ignored || role == Role::Vertical ? Level(Slope{})
-                                                                        : Level(input_, face));
-      ignored_.push_back(role == Role::Ignored);
-      if (role == Role::Vertical) vertical_.push_back(f);
-      if (role == Role::Ignored || role == Role::Vertical) continue;
+      levels_.push_back(role == FaceRole::Ignored || role == FaceRole::Vertical
+                            ? Level(Slope{})
+                            : Level(input_, face));
+      if (role == FaceRole::Vertical) vertical_.push_back(f);
+      if (role == FaceRole::Ignored || role == FaceRole::Vertical) continue;
       for (const Ring& ring : face.rings)
         for (std::size_t i = 0; i < ring.size(); ++i) {
           const GridPoint2 a = project(input_.points[ring[i]], Axis::Z),
@@ -171,7 +118,7 @@ class Rebuild {
   void stack() {
     corner_z_.clear();
     for (std::uint32_t f = 0; f < input_.faces.size(); ++f) {
-      if (roles_[f] == Role::Ignored || roles_[f] == Role::Vertical) continue;
+      if (roles_[f] == FaceRole::Ignored || roles_[f] == FaceRole::Vertical) continue;
       for (const Ring& ring : input_.faces[f].rings)
         for (const std::uint32_t corner : ring) {
           const GridPoint& p = input_.points[corner];
@@ -254,14 +201,18 @@ class Rebuild {
         return first;
       };
       const std::int64_t high = layers.back().z, low = layers.front().z;
-      const auto is_top = [](Role role) { return role == Role::Up || role == Role::Either; };
-      const auto is_bottom = [](Role role) { return role == Role::Down || role == Role::Either; };
+      const auto is_top = [](FaceRole role) {
+        return role == FaceRole::Up || role == FaceRole::Either;
+      };
+      const auto is_bottom = [](FaceRole role) {
+        return role == FaceRole::Down || role == FaceRole::Either;
+      };
       if (high - low <= kSameLayer) {
         // One layer: a roof, a ground, or what its face looks like.
-        if (const auto up = first_in_layer(low, high, [](Role r) { return r == Role::Up; }))
+        if (const auto up = first_in_layer(low, high, [](FaceRole r) { return r == FaceRole::Up; }))
           tops_[c] = up;
         else if (const auto down =
-                     first_in_layer(low, high, [](Role r) { return r == Role::Down; }))
+                     first_in_layer(low, high, [](FaceRole r) { return r == FaceRole::Down; }))
           bottoms_[c] = down;
         else
           (faces_up(layers[0].level) ? tops_ : bottoms_)[c] = layers[0].level;
@@ -275,8 +226,9 @@ class Rebuild {
       std::optional<std::int64_t> floor;
       for (const Layer& layer : layers) {
         if (layer.z <= low + kSameLayer || layer.z >= high - kSameLayer) continue;
-        const bool down = roles_[layer.level] == Role::Down || !faces_up(layer.level);
-        if (down && (floor ? layer.z - *floor > kSameLayer : roles_[layer.level] == Role::Down)) {
+        const bool down = roles_[layer.level] == FaceRole::Down || !faces_up(layer.level);
+        if (down &&
+            (floor ? layer.z - *floor > kSameLayer : roles_[layer.level] == FaceRole::Down)) {
           air_m2 += partition_.cells[c].area_m2;
           break;
         }
@@ -295,14 +247,8 @@ class Rebuild {
 
   void draw_walls() {
     for (const std::uint32_t f : vertical_) {
-      const Ring& ring = input_.faces[f].rings[0];
-      const auto [first, last] =
-          std::minmax_element(ring.begin(), ring.end(), [&](std::uint32_t i, std::uint32_t j) {
-            return project(input_.points[i], Axis::Z) < project(input_.points[j], Axis::Z);
-          });
-      const GridPoint2 a = project(input_.points[*first], Axis::Z),
-                       b = project(input_.points[*last], Axis::Z);
-      if (a != b) lines_.push_back({a, b});
+      const PartitionLine line = seen_from_above(input_, input_.faces[f]);
+      if (line.a != line.b) lines_.push_back(line);
     }
   }
 
@@ -323,7 +269,7 @@ class Rebuild {
     const BoxTree tree(boxes);
     std::set<std::uint32_t> used;
     for (std::uint32_t f = 0; f < input_.faces.size(); ++f)
-      if (roles_[f] != Role::Ignored)
+      if (roles_[f] != FaceRole::Ignored)
         for (const Ring& ring : input_.faces[f].rings) used.insert(ring.begin(), ring.end());
     for (const std::uint32_t i : used) {
       const GridPoint& p = input_.points[i];
@@ -574,13 +520,12 @@ class Rebuild {
     }
   }
 
-  const Shell& input_;
+  const Shell input_;
   const RunContext& context_;
   std::int64_t tolerance_;
 
-  std::vector<Role> roles_;    ///< by face
-  std::vector<char> ignored_;  ///< by face
-  std::vector<double> up_;     ///< by level: z of the normal
+  std::vector<FaceRole> roles_;  ///< by face
+  std::vector<double> up_;       ///< by level: z of the normal
   std::vector<Level> levels_;
   std::vector<LevelFace> looks_;  ///< by level
   std::vector<std::uint32_t> vertical_;

@@ -255,8 +255,16 @@ TEST(Rebuild25d, ATableIsNoRoofOnWalls) {
 
 TEST(Rebuild25d, WhatWouldBeLostIsRefused) {
   Draw draw = house();
-  draw.wall({12, 0, 0}, {12, 8, 0}, 6);  // stands alone
+  draw.walls(rectangle(12, 0, 15, 8), 6);  // encloses something, but has neither roof nor ground
   EXPECT_FALSE(rebuild(draw.done()));
+}
+
+TEST(Rebuild25d, AWallThatEnclosesNothingIsNoLoss) {
+  Draw draw = house();
+  draw.wall({12, 0, 0}, {12, 8, 0}, 6);
+  const auto shell = rebuild(draw.done());
+  ASSERT_TRUE(shell);
+  EXPECT_NEAR(gated_volume_m3(*shell), kHouse_m3, 1e-9);
 }
 
 TEST(Rebuild25d, MovingTheModelChangesNothing) {
