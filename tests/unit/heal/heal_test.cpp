@@ -222,7 +222,18 @@ TEST(Heal, WhatCannotBeHealedBecomesABlock) {
   draw.ground(rectangle(0, 0, 10, 8)).walls(rectangle(0, 0, 10, 8), 4);
   draw.wall({5, -3, 0}, {5, 12, 0}, 9);
   draw.face(SurfaceType::RoofSurface, {{{0, 0, 4}, {10, 0, 4}, {10, 4, 7}, {0, 4, 7}}});
-  const auto healed = heal(draw.done());
+  // A judge that takes nothing with a pitch, so that no other rung gets through.
+  const DeliveryGate blocks_only = [](const Shell& shell) {
+    std::vector<Issue> issues = delivery_gate(shell);
+    for (const Face& face : shell.faces)
+      for (const Ring& ring : face.rings)
+        for (const std::uint32_t corner : ring)
+          if (shell.points[corner].z != shell.points[ring[0]].z &&
+              face.type == SurfaceType::RoofSurface)
+            issues.push_back({306, "", 0});
+    return issues;
+  };
+  const auto healed = citymesh::heal(draw.done(), kLod, {}, blocks_only, RunContext{});
   EXPECT_EQ(healed.rung, "lod1_block");
   EXPECT_EQ(healed.lane, "2.5d");
   EXPECT_GT(healed.deviation.max_m, 0.5);
@@ -230,7 +241,7 @@ TEST(Heal, WhatCannotBeHealedBecomesABlock) {
   EXPECT_NEAR(volume_m3(healed), 80 * 6.1, 80 * 0.2);
   HealOptions options;
   options.block_on_failure = false;
-  const auto dropped = heal(draw.done(), options);
+  const auto dropped = citymesh::heal(draw.done(), kLod, options, blocks_only, RunContext{});
   EXPECT_EQ(dropped.rung, "");
   EXPECT_EQ(dropped.reason, "not_healed");
 }
