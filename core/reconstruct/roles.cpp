@@ -5,6 +5,7 @@
 
 #include "core/geometry/box_tree.h"
 #include "core/geometry/predicates.h"
+#include "core/reconstruct/untangle.h"
 
 namespace citymesh {
 namespace {
@@ -91,6 +92,7 @@ Shell with_clean_rings(const Shell& shell) {
     if (!face.rings.empty() && face.rings[0].empty()) face.rings.clear();
     std::erase_if(face.rings, [](const Ring& ring) { return ring.empty(); });
   }
+  untangle(clean);
   return clean;
 }
 

@@ -21,7 +21,8 @@ FaceRole role_of(const Shell& shell, const Face& face, std::int64_t tolerance_st
 /// The line over which a vertical face stands.
 PartitionLine seen_from_above(const Shell& shell, const Face& face);
 
-/// The same faces without repeated corners and spikes in their rings.
+/// The same faces without repeated corners and spikes in their rings, and those untangled that can
+/// be.
 Shell with_clean_rings(const Shell& shell);
 
 }  // namespace citymesh
