@@ -33,6 +33,7 @@ constexpr std::array kHealSteps{
     HealStep{"insert_junctions", insert_junctions},
     HealStep{"clean_rings", clean_rings},
     HealStep{"drop_duplicate_faces", drop_duplicate_faces},
+    HealStep{"drop_inner_sheets", drop_inner_sheets},
     HealStep{"orient_faces", orient_faces},
     HealStep{"close_holes", close_holes},
     HealStep{"orient_faces", orient_faces},

@@ -37,6 +37,10 @@ void insert_junctions(Shell& shell, StepContext& context);
 /// Of faces over the same corners keeps one, or none where they are an inner wall (S2-04, S3-14).
 void drop_duplicate_faces(Shell& shell, StepContext& context);
 
+/// Drops plane pieces that bound nothing: walls across a house, sheets that hang free. Each hangs
+/// together across edges of two faces and ends in edges of one face or of more than two (S3-14).
+void drop_inner_sheets(Shell& shell, StepContext& context);
+
 /// Turns faces so that neighbours agree and every component faces outwards (cavities inwards).
 void orient_faces(Shell& shell, StepContext& context);
 

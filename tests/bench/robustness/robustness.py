@@ -338,6 +338,7 @@ def main():
     parser.add_argument("--val3dity", help="also let this program validate the healed CityJSON")
     parser.add_argument("--data", type=Path, default=os.environ.get("CITYMESH_EXTRA_DATA"), help="folder of the real city models")
     parser.add_argument("--only", default="", help="files whose name contains this; `generated` for the generated houses")
+    parser.add_argument("--skip-collections", action="store_true", help="leave out the collections of defects and soups")
     parser.add_argument("--plan", default="seed=1 sound=4 singles=4 pairs=3", help="options of citymesh_make_defects")
     parser.add_argument("--jobs", type=int, default=1, help="runs at the same time; more than one spoils the times")
     parser.add_argument("--output", type=Path, help="page whose measured part is replaced")
@@ -349,7 +350,8 @@ def main():
         ok &= generated_part(tools, [f"--{word}" for word in tools.plan.split()], page, offenders)
     if tools.data and Path(tools.data).is_dir():
         ok &= real_part(tools, Path(tools.data), tools.only, page, offenders)
-        ok &= defects_part(tools, Path(tools.data), tools.only, page)
+        if not tools.skip_collections:
+            ok &= defects_part(tools, Path(tools.data), tools.only, page)
     elif tools.only != "generated":
         print("CITYMESH_EXTRA_DATA names no folder; it holds the city models of the real part", file=sys.stderr)
         return 77

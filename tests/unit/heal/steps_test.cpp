@@ -96,5 +96,32 @@ TEST(Blocks, ThePercentileIsOfRoofArea) {
   EXPECT_EQ(blocks.candidates[0].points.back().z, 90000);
 }
 
+TEST(DropInnerSheets, AWallThroughABoxGoesWhetherItSharesCornersOrNot) {
+  // A box without its lid is open, but no sheet: it stays.
+  const std::vector<GridPoint> points{{0, 0, 0},
+                                      {90000, 0, 0},
+                                      {90000, 90000, 0},
+                                      {0, 90000, 0},
+                                      {0, 0, 90000},
+                                      {90000, 0, 90000},
+                                      {90000, 90000, 90000},
+                                      {0, 90000, 90000},
+                                      {10000, 10000, 10000},
+                                      {10000, 80000, 10000},
+                                      {10000, 80000, 80000},
+                                      {10000, 10000, 80000}};
+  auto shell = shell_of(points, {{{3, 2, 1, 0}},
+                                 {{0, 1, 5, 4}},
+                                 {{1, 2, 6, 5}},
+                                 {{2, 3, 7, 6}},
+                                 {{3, 0, 4, 7}},
+                                 {{8, 9, 10, 11}},  // hangs free
+                                 {{0, 2, 6, 4}}});  // ends in edges of three
+  StepContext context;
+  drop_inner_sheets(shell, context);
+  EXPECT_EQ(shell.faces.size(), 5u);
+  EXPECT_EQ(context.repairs.size(), 2u);
+}
+
 }  // namespace
 }  // namespace citymesh
