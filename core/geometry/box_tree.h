@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/geometry/point.h"
@@ -25,6 +27,14 @@ struct GridBox {
   }
   GridBox grown(std::int64_t by) const {
     return {{min.x - by, min.y - by, min.z - by}, {max.x + by, max.y + by, max.z + by}};
+  }
+  /// Of the nearest place of the box, in steps²; 0 inside.
+  double squared_distance(const GridPoint& p) const {
+    const auto off = [](std::int64_t low, std::int64_t at, std::int64_t high) {
+      return static_cast<double>(std::max({low - at, at - high, std::int64_t{0}}));
+    };
+    const double x = off(min.x, p.x, max.x), y = off(min.y, p.y, max.y), z = off(min.z, p.z, max.z);
+    return x * x + y * y + z * z;
   }
   bool meets(const GridBox& b) const {
     return min.x <= b.max.x && b.min.x <= max.x && min.y <= b.max.y && b.min.y <= max.y &&
@@ -55,6 +65,36 @@ class BoxTree {
         stack[depth++] = node.first;  // children lie next to each other
         stack[depth++] = node.first + 1;
       }
+    }
+  }
+
+  /// Branch and bound: calls visit(index of a box), which returns the bound from then on, for boxes
+  /// whose squared distance to `p` (in steps) is below the bound; near boxes first.
+  template <class Visit>
+  void for_each_nearer(const GridPoint& p, Visit&& visit) const {
+    if (nodes_.empty()) return;
+    double bound = std::numeric_limits<double>::infinity();
+    struct Open {
+      std::uint32_t node;
+      double squared;
+    };
+    Open stack[64];
+    int depth = 0;
+    stack[depth++] = {0, nodes_[0].box.squared_distance(p)};
+    while (depth > 0) {
+      const Open open = stack[--depth];
+      if (!(open.squared < bound)) continue;
+      const Node& node = nodes_[open.node];
+      if (node.count > 0) {
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+          if (boxes_[order_[i]].squared_distance(p) < bound) bound = visit(order_[i]);
+        continue;
+      }
+      Open near{node.first, nodes_[node.first].box.squared_distance(p)},
+          far{node.first + 1, nodes_[node.first + 1].box.squared_distance(p)};
+      if (far.squared < near.squared) std::swap(near, far);
+      stack[depth++] = far;
+      stack[depth++] = near;
     }
   }
 

@@ -1,5 +1,6 @@
 #include "core/geometry/measure.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -19,6 +20,15 @@ std::vector<GridBox> boxes_of(std::span<const GridPoint> points,
   boxes.reserve(triangles.size());
   for (const Triangle& t : triangles) boxes.push_back(box_of(points, t));
   return boxes;
+}
+
+/// Many copies of one triangle would all be nearest.
+std::vector<Triangle> each_once(std::span<const Triangle> triangles) {
+  std::vector<Triangle> sorted(triangles.begin(), triangles.end());
+  for (Triangle& t : sorted) std::sort(t.begin(), t.end());
+  std::sort(sorted.begin(), sorted.end());
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  return sorted;
 }
 
 }  // namespace
@@ -87,27 +97,19 @@ GridBox box_of(std::span<const GridPoint> points, const Triangle& triangle) {
 
 DistanceField::DistanceField(std::span<const GridPoint> points, std::span<const Triangle> triangles)
     : points_(points.begin(), points.end()),
-      triangles_(triangles.begin(), triangles.end()),
-      tree_(boxes_of(points, triangles)) {
-  if (triangles_.empty()) return;
-  GridBox box = box_of(points_, triangles_[0]);
-  for (const Triangle& t : triangles_) box.add(box_of(points_, t));
-  diagonal_ = (box.max.x - box.min.x) + (box.max.y - box.min.y) + (box.max.z - box.min.z) + 1;
-}
+      triangles_(each_once(triangles)),
+      tree_(boxes_of(points, triangles_)) {}
 
 double DistanceField::distance_m(const GridPoint& p) const {
   double nearest = std::numeric_limits<double>::infinity();
-  if (triangles_.empty()) return nearest;
-  // Grow the search box until it holds the nearest triangle for certain.
-  for (std::int64_t reach = 16;; reach *= 4) {
-    tree_.for_each_meeting(GridBox::of(p).grown(reach), [&](std::uint32_t i) {
-      const Triangle& t = triangles_[i];
-      nearest =
-          std::min(nearest, distance_to_triangle_m(p, points_[t[0]], points_[t[1]], points_[t[2]]));
-    });
-    if (nearest <= static_cast<double>(reach) * kGridStep_m) return nearest;
-    if (reach > 4 * kGridLimit) return nearest;
-  }
+  tree_.for_each_nearer(p, [&](std::uint32_t i) {
+    const Triangle& t = triangles_[i];
+    nearest =
+        std::min(nearest, distance_to_triangle_m(p, points_[t[0]], points_[t[1]], points_[t[2]]));
+    const double steps = nearest * kGridStepsPerMetre;
+    return steps * steps;
+  });
+  return nearest;
 }
 
 Deviation deviation_to(std::span<const GridPoint> points, std::span<const Triangle> triangles,

@@ -37,7 +37,6 @@ class DistanceField {
   std::vector<GridPoint> points_;
   std::vector<Triangle> triangles_;
   BoxTree tree_;
-  std::int64_t diagonal_ = 0;
 };
 
 struct Deviation {

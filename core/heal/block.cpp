@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "core/geometry/box_tree.h"
 #include "core/geometry/overlay.h"
 #include "core/geometry/triangulation.h"
 #include "core/heal/steps.h"
@@ -16,6 +17,9 @@ constexpr double kMinHeight_m = 0.5;  ///< a block flatter than this is no build
 constexpr double kMinArea_m2 = 0.01;  ///< slivers of an overlay are no footprint
 constexpr std::array kOutlines_m{0.01, 0.05, 0.2,
                                  0.5};  ///< tolerances of simpler and simpler outlines
+
+constexpr std::uint64_t kMaxOverlaps =
+    200'000;  ///< of boxes of triangles, up to which a footprint is their union
 
 /// Triangles of a face, seen from above, counter-clockwise; vertical ones vanish.
 void project_face(const Shell& shell, const Face& face, std::vector<Area>& areas) {
@@ -32,6 +36,29 @@ void project_face(const Shell& shell, const Face& face, std::vector<Area>& areas
   }
 }
 
+Area hull_of(const std::vector<Area>& areas) {
+  std::vector<GridPoint2> corners;
+  for (const Area& area : areas)
+    corners.insert(corners.end(), area.exterior.begin(), area.exterior.end());
+  return convex_hull(std::move(corners));
+}
+
+/// Whether so many areas lie over each other that uniting them would take too long.
+bool is_a_tangle(const std::vector<Area>& areas) {
+  std::vector<GridBox> boxes;
+  boxes.reserve(areas.size());
+  for (const Area& area : areas) {
+    GridBox box = GridBox::of({area.exterior[0].x, area.exterior[0].y, 0});
+    for (const GridPoint2& p : area.exterior) box.add(GridPoint{p.x, p.y, 0});
+    boxes.push_back(box);
+  }
+  const BoxTree tree(boxes);
+  std::uint64_t overlaps = 0;
+  for (std::size_t i = 0; i < boxes.size() && overlaps <= kMaxOverlaps; ++i)
+    tree.for_each_meeting(boxes[i], [&](std::uint32_t) { ++overlaps; });
+  return overlaps > kMaxOverlaps;
+}
+
 /// Union of the ground faces, else of all faces seen from above.
 std::vector<Area> footprint(const Shell& shell) {
   std::vector<Area> ground, all;
@@ -40,8 +67,14 @@ std::vector<Area> footprint(const Shell& shell) {
     if (face.type == SurfaceType::GroundSurface) project_face(shell, face, ground);
     project_face(shell, face, all);
   }
-  for (const auto* areas : {&ground, &all}) {
+  for (auto* areas : {&ground, &all}) {
     if (areas->empty()) continue;
+    std::sort(areas->begin(), areas->end(),
+              [](const Area& a, const Area& b) { return a.exterior < b.exterior; });
+    areas->erase(std::unique(areas->begin(), areas->end(),
+                             [](const Area& a, const Area& b) { return a.exterior == b.exterior; }),
+                 areas->end());
+    if (is_a_tangle(*areas)) return {hull_of(*areas)};
     auto united = unite(*areas);
     if (united && !united->empty()) return std::move(*united);
   }
@@ -150,13 +183,13 @@ Shell extrude(const std::vector<Area>& areas, std::int64_t base, std::int64_t to
 
 }  // namespace
 
-Blocks lod1_blocks(const Shell& shell, bool footprint_only,
-                   std::optional<double> measured_height_m) {
-  Blocks blocks;
+std::string lod1_block(const Shell& shell, bool footprint_only,
+                       std::optional<double> measured_height_m,
+                       const std::function<bool(Shell&)>& take) {
   std::set<std::uint32_t> used;
   for (const Face& face : shell.faces)
     for (const Ring& ring : face.rings) used.insert(ring.begin(), ring.end());
-  if (used.empty()) return {{}, "no_geometry"};
+  if (used.empty()) return "no_geometry";
   std::int64_t base = shell.points[*used.begin()].z;
   for (const std::uint32_t i : used) base = std::min(base, shell.points[i].z);
 
@@ -166,30 +199,30 @@ Blocks lod1_blocks(const Shell& shell, bool footprint_only,
   if ((!top || *top - base < min_height) && measured_height_m &&
       *measured_height_m >= kMinHeight_m && *measured_height_m < 2000)
     top = base + std::llround(*measured_height_m * kGridStepsPerMetre);
-  if (!top || *top - base < min_height) return {{}, "no_height"};
+  if (!top || *top - base < min_height) return "no_height";
 
   const std::vector<Area> whole = footprint(shell);
-  if (whole.empty()) return {{}, "no_geometry"};
-  const auto add = [&](std::vector<Area> areas) {
+  if (whole.empty()) return "no_geometry";
+  std::string reason = "no_geometry";
+  const auto offer = [&](std::vector<Area> areas) {
     std::erase_if(areas, [](const Area& area) {
       return static_cast<double>(area2(area)) <
              2 * kMinArea_m2 * kGridStepsPerMetre * kGridStepsPerMetre;
     });
-    if (!areas.empty())
-      blocks.candidates.push_back(extrude(without_pinches(std::move(areas)), base, *top));
+    if (areas.empty()) return false;
+    reason = "not_healed";
+    Shell block = extrude(without_pinches(std::move(areas)), base, *top);
+    return take(block);
   };
-  add(whole);
+  if (offer(whole)) return "";
   for (const double tolerance_m : kOutlines_m) {
-    auto smoother = smooth(whole, tolerance_m);
+    const auto smoother = smooth(whole, tolerance_m);
     if (!smoother) continue;
-    if (auto simpler = simplify(*smoother, tolerance_m)) add(std::move(*simpler));
+    auto simpler = simplify(*smoother, tolerance_m);
+    if (simpler && offer(std::move(*simpler))) return "";
   }
-  std::vector<GridPoint2> corners;
-  for (const Area& area : whole)
-    corners.insert(corners.end(), area.exterior.begin(), area.exterior.end());
-  if (Area hull = convex_hull(std::move(corners)); !hull.exterior.empty()) add({std::move(hull)});
-  if (blocks.candidates.empty()) blocks.reason = "no_geometry";
-  return blocks;
+  if (Area hull = hull_of(whole); !hull.exterior.empty() && offer({std::move(hull)})) return "";
+  return reason;
 }
 
 }  // namespace citymesh

@@ -44,6 +44,9 @@ constexpr std::array kHealSteps{
 /// displacement.
 constexpr std::array kWiderTolerances_m{0.005, 0.02, 0.05};
 
+/// Work limit of rung `healed`: faces of all attempts; one attempt is always made.
+constexpr std::size_t kMaxFacesTried = 200'000;
+
 bool is_opening(SurfaceType type) {
   return type == SurfaceType::Window || type == SurfaceType::Door;
 }
@@ -192,12 +195,14 @@ class Ladder {
   }
 
   bool try_healed(const Gridded& input) {
+    std::size_t faces_tried = 0;
     const bool has_openings = std::any_of(input.shell.faces.begin(), input.shell.faces.end(),
                                           [](const Face& face) { return is_opening(face.type); });
     for (const double tolerance_m : tolerances_m())
       for (int without_openings = 0; without_openings <= (has_openings ? 1 : 0);
            ++without_openings) {
-        if (context_.stopped()) return false;
+        if (context_.stopped() || faces_tried > kMaxFacesTried) return false;
+        faces_tried += input.shell.faces.size();
         Shell shell = input.shell;
         StepContext step{tolerance_m, std::max(options_.planarity_tolerance_m, tolerance_m), {}, 0};
         // An opening in front of or behind its wall leaves the wall open: the wall is closed
@@ -246,17 +251,17 @@ class Ladder {
 
   bool try_block(const Gridded& input, bool footprint_only) {
     if (!options_.block_on_failure) return false;
-    Blocks blocks = lod1_blocks(input.shell, footprint_only,
-                                number_attribute(building_.attributes, "measuredHeight"));
-    if (blocks.candidates.empty()) result_.reason = blocks.reason;
-    for (Shell& shell : blocks.candidates) {
-      if (context_.stopped()) return false;
-      if (!gate_(shell).empty()) continue;
-      result_.deviation = deviation_between(input.shell, shell);
-      result_.repairs = {{"replaced_by_block", building_.gml_id, result_.deviation.max_m}};
-      return deliver("lod1_block", std::move(shell));
-    }
-    return false;
+    const std::string reason = lod1_block(
+        input.shell, footprint_only, number_attribute(building_.attributes, "measuredHeight"),
+        [&](Shell& shell) {
+          if (context_.stopped()) return true;
+          if (!gate_(shell).empty()) return false;
+          result_.deviation = deviation_between(input.shell, shell);
+          result_.repairs = {{"replaced_by_block", building_.gml_id, result_.deviation.max_m}};
+          return deliver("lod1_block", std::move(shell));
+        });
+    if (result_.rung.empty()) result_.reason = reason;
+    return !result_.rung.empty();
   }
 
   bool deliver(std::string rung, Shell shell) {

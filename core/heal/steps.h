@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -55,13 +56,11 @@ void drop_double_triangles(Shell& shell, StepContext& context);
 /// Gives faces without a type one by their normal: up a roof, down a ground, else a wall.
 void type_faces(Shell& shell);
 
-/// The LoD1 blocks of the contract, the likeliest first: later ones are simpler outlines of the
-/// same extent. Empty with `reason` no_geometry or no_height when there is none.
-struct Blocks {
-  std::vector<Shell> candidates{};
-  std::string reason{};
-};
-Blocks lod1_blocks(const Shell& shell, bool footprint_only,
-                   std::optional<double> measured_height_m);
+/// Hands the LoD1 blocks of the contract to `take`, the likeliest first, later ones of simpler
+/// outlines, until it takes one. Returns "" when one was taken, else why not: no_geometry or
+/// no_height when there is none, not_healed when none was taken.
+std::string lod1_block(const Shell& shell, bool footprint_only,
+                       std::optional<double> measured_height_m,
+                       const std::function<bool(Shell&)>& take);
 
 }  // namespace citymesh

@@ -91,9 +91,11 @@ TEST(Blocks, ThePercentileIsOfRoofArea) {
                         {{{3, 2, 1, 0}}, {{4, 5, 6, 7}}, {{8, 9, 10, 11}}});
   shell.faces[0].type = SurfaceType::GroundSurface;
   shell.faces[1].type = shell.faces[2].type = SurfaceType::RoofSurface;
-  const Blocks blocks = lod1_blocks(shell, false, {});
-  ASSERT_FALSE(blocks.candidates.empty());
-  EXPECT_EQ(blocks.candidates[0].points.back().z, 90000);
+  Shell block;
+  EXPECT_EQ(lod1_block(shell, false, {}, [&](Shell& offered) { return block = offered, true; }),
+            "");
+  ASSERT_FALSE(block.points.empty());
+  EXPECT_EQ(block.points.back().z, 90000);
 }
 
 TEST(DropInnerSheets, AWallThroughABoxGoesWhetherItSharesCornersOrNot) {
