@@ -13,7 +13,7 @@
 #include "core/heal/steps.h"
 #include "core/reconstruct/lane.h"
 #include "core/reconstruct/rebuild_2_5d.h"
-#include "core/reconstruct/reconstruct.h"
+#include "core/reconstruct/rebuild_3d.h"
 #include "core/validate/validate.h"
 
 namespace citymesh {
@@ -32,13 +32,18 @@ constexpr std::array kHealSteps{
     HealStep{"clean_rings", clean_rings},
     HealStep{"insert_junctions", insert_junctions},
     HealStep{"clean_rings", clean_rings},
+    HealStep{"drop_broken_faces", drop_broken_faces},
     HealStep{"drop_duplicate_faces", drop_duplicate_faces},
     HealStep{"drop_inner_sheets", drop_inner_sheets},
     HealStep{"orient_faces", orient_faces},
     HealStep{"close_holes", close_holes},
+    HealStep{"restore_broken_faces", restore_broken_faces},
     HealStep{"orient_faces", orient_faces},
-    HealStep{"drop_double_triangles", drop_double_triangles},
 };
+
+void prepare(Shell& shell, StepContext& step) {
+  for (const HealStep& heal_step : kHealSteps) heal_step.apply(shell, step);
+}
 
 /// Tolerances of rung `healed` after the one asked for, as long as they stay below the limit of
 /// displacement.
@@ -131,10 +136,11 @@ bool is_closed(const Shell& shell) {
 struct Rebuild {
   std::string_view rung;
   Reconstruction reconstruct;
+  bool prepared;  ///< takes what the steps of `healed` made of the input
 };
-const std::vector<Rebuild> kRebuilds{
-    {"rebuilt_2_5d", rebuild_2_5d},
-    // {"rebuilt_3d", rebuild_3d}, {"wrapped", wrap}
+constexpr std::array kRebuilds{
+    Rebuild{"rebuilt_2_5d", rebuild_2_5d, false},
+    Rebuild{"rebuilt_3d", rebuild_3d, true},
 };
 
 class Ladder {
@@ -172,7 +178,7 @@ class Ladder {
     }
     for (const Rebuild& rebuild : kRebuilds)
       for (const Gridded& input : rebuildable)
-        if (try_rebuilt(rebuild.rung, rebuild.reconstruct, input)) return std::move(result_);
+        if (try_rebuilt(rebuild, input)) return std::move(result_);
     if (!first)
       result_.reason = "no_geometry";
     else if (!try_block(*first, geometries[0]->footprint) && result_.reason.empty())
@@ -204,7 +210,7 @@ class Ladder {
         if (context_.stopped() || faces_tried > kMaxFacesTried) return false;
         faces_tried += input.shell.faces.size();
         Shell shell = input.shell;
-        StepContext step{tolerance_m, std::max(options_.planarity_tolerance_m, tolerance_m), {}, 0};
+        StepContext step = step_context(tolerance_m);
         // An opening in front of or behind its wall leaves the wall open: the wall is closed
         // instead.
         std::optional<Openings> openings;
@@ -212,7 +218,8 @@ class Ladder {
           openings.emplace(shell);
           step.note("openings_closed", building_.gml_id);
         }
-        for (const HealStep& heal_step : kHealSteps) heal_step.apply(shell, step);
+        prepare(shell, step);
+        drop_double_triangles(shell, step);
         if (openings) openings->give_back(shell);
         type_faces(shell);
         if (shell.faces.empty() || step.max_displacement_m > options_.max_displacement_m) continue;
@@ -226,19 +233,33 @@ class Ladder {
   }
 
   /// A rung that builds the boundary anew, with growing tolerances.
-  bool try_rebuilt(std::string_view rung, Reconstruction reconstruct, const Gridded& input) {
+  bool try_rebuilt(const Rebuild& rebuild, const Gridded& input) {
     for (const double tolerance_m : tolerances_m()) {
       if (context_.stopped()) return false;
-      std::optional<Shell> shell = reconstruct(input.shell, {tolerance_m}, context_);
+      StepContext step = step_context(tolerance_m);
+      Shell prepared = input.shell;
+      if (rebuild.prepared) prepare(prepared, step);
+      std::optional<Shell> shell = rebuild.reconstruct(prepared, {tolerance_m}, context_);
       if (!shell || shell->faces.empty()) continue;
       type_faces(*shell);
       if (!gate_(*shell).empty()) continue;
       result_.deviation = deviation_between(input.shell, *shell);
       result_.max_displacement_m = input.max_displacement_m;
-      result_.repairs = {{std::string(rung), building_.gml_id, result_.deviation.max_m}};
-      return deliver(std::string(rung), std::move(*shell));
+      result_.repairs = std::move(step.repairs);
+      result_.repairs.push_back(
+          {std::string(rebuild.rung), building_.gml_id, result_.deviation.max_m});
+      return deliver(std::string(rebuild.rung), std::move(*shell));
     }
     return false;
+  }
+
+  StepContext step_context(double tolerance_m) const {
+    return {tolerance_m,
+            std::max(options_.planarity_tolerance_m, tolerance_m),
+            options_.max_hole_area_m2,
+            {},
+            {},
+            0};
   }
 
   std::vector<double> tolerances_m() const {

@@ -5,6 +5,7 @@
 
 #include "core/citymodel/edges.h"
 #include "core/geometry/measure.h"
+#include "core/geometry/patch.h"
 #include "core/geometry/triangulation.h"
 #include "core/heal/steps.h"
 
@@ -13,6 +14,9 @@ namespace {
 
 constexpr std::size_t kMaxChordSearch =
     200;  ///< corners of a loop up to which chords are tried (quadratic)
+
+constexpr double kUprightSlope = 0.1;       ///< of the normal, within 6 degrees of the horizontal
+constexpr double kUprightPreference = 100;  ///< of areas
 
 struct Plane {
   Point3 normal{};   ///< unit length; zero for a degenerate loop
@@ -39,6 +43,11 @@ Plane plane_of(const Shell& shell, const Ring& loop) {
   plane.through = {plane.through.x / n_corners, plane.through.y / n_corners,
                    plane.through.z / n_corners};
   return plane;
+}
+
+double area_m2(const Shell& shell, const Ring& loop) {
+  const Point3 n = ring_normal(shell.points, loop);
+  return std::hypot(n.x, n.y, n.z) / 2 * kGridStep_m * kGridStep_m;
 }
 
 bool is_planar(const Shell& shell, const Ring& loop, double tolerance_m) {
@@ -87,8 +96,8 @@ std::vector<Ring> free_loops(const Shell& shell) {
   return loops;
 }
 
-/// Cuts planar pieces off a loop along chords, the largest piece first; what is left may not be
-/// planar.
+/// Cuts planar pieces off a loop along chords, upright ones first, as what misses are mostly walls,
+/// and the largest first of those; what is left may not be planar.
 void split_into_planar(const Shell& shell, Ring loop, double tolerance_m, std::vector<Ring>& planar,
                        std::vector<Ring>& rest) {
   while (!is_planar(shell, loop, tolerance_m)) {
@@ -105,7 +114,8 @@ void split_into_planar(const Shell& shell, Ring loop, double tolerance_m, std::v
         for (std::size_t k = 0; k <= length; ++k) piece.push_back(loop[(i + k) % n]);
         if (!is_planar(shell, piece, tolerance_m)) continue;
         const Point3 normal = ring_normal(shell.points, piece);
-        const double area = std::hypot(normal.x, normal.y, normal.z);
+        double area = std::hypot(normal.x, normal.y, normal.z);
+        if (std::abs(normal.z) <= kUprightSlope * area) area *= kUprightPreference;
         if (area <= best_area) continue;
         Ring remainder;
         for (std::size_t k = length; k <= n; ++k) remainder.push_back(loop[(i + k) % n]);
@@ -150,6 +160,11 @@ void close_holes(Shell& shell, StepContext& context) {
   std::set<Ring> outlines;
   for (const Face& face : shell.faces) outlines.insert(sorted(face.rings[0]));
   std::erase_if(planar, [&](const Ring& loop) { return outlines.contains(sorted(loop)); });
+  for (const Ring& loop : rest)
+    if (const auto patch = minimal_patch(shell.points, loop))
+      for (const Triangle& t : *patch) planar.push_back({t[0], t[1], t[2]});
+  std::erase_if(planar,
+                [&](const Ring& loop) { return area_m2(shell, loop) > context.max_hole_area_m2; });
 
   // A loop inside another one in the same plane, walked the other way round, is a hole of the
   // other's face: the courtyard of a missing ground.

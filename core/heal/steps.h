@@ -15,6 +15,8 @@ namespace citymesh {
 struct StepContext {
   double tolerance_m = 0.001;           ///< of snapping and T-junctions in this attempt
   double planarity_tolerance_m = 0.01;  ///< of holes
+  double max_hole_area_m2 = 10000;      ///< larger loops stay open
+  std::vector<Face> broken{};           ///< set aside until their places are closed
   std::vector<Repair> repairs{};
   double max_displacement_m = 0;
 
@@ -32,6 +34,13 @@ void snap_points(Shell& shell, StepContext& context);
 /// three corners and faces without an exterior (S3-10 b).
 void clean_rings(Shell& shell, StepContext& context);
 
+/// Sets faces aside that cannot be triangulated: their rings cross or overlap (104, 201). The edges
+/// that they leave free tell better than they do where they should be.
+void drop_broken_faces(Shell& shell, StepContext& context);
+
+/// Faces that closed the place of a broken one get its type and source.
+void restore_broken_faces(Shell& shell, StepContext& context);
+
 /// Puts vertices that lie on the edge of a face into that edge (S2-04).
 void insert_junctions(Shell& shell, StepContext& context);
 
@@ -45,8 +54,8 @@ void drop_inner_sheets(Shell& shell, StepContext& context);
 /// Turns faces so that neighbours agree and every component faces outwards (cavities inwards).
 void orient_faces(Shell& shell, StepContext& context);
 
-/// Closes loops of free edges that are planar, or fall apart into planar ones along a chord; nested
-/// loops in one plane become holes of the new face.
+/// Closes loops of free edges: planar ones, or planar pieces of them along chords, with a face;
+/// nested loops in one plane become holes of it. Other loops get triangles of the least area.
 void close_holes(Shell& shell, StepContext& context);
 
 /// Where two faces lie on each other in the same triangles: an inner wall between touching volumes

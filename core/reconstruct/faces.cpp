@@ -1,0 +1,121 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/geometry/around_edge.h"
+#include "core/geometry/triangulation.h"
+#include "core/reconstruct/boundary.h"
+
+namespace citymesh {
+namespace {
+
+constexpr double kFlat_m = 0.005;  ///< a polygon's corners lie this close to its plane
+
+double length(const Point3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+
+double dot(const Point3& a, const Point3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+/// Triangles of one parent, connected across edges that only two triangles share.
+std::map<std::uint32_t, std::vector<std::uint32_t>> regions_of(const Boundary& boundary) {
+  IndexSets sets(boundary.triangles.size());
+  for (const auto& [edge, fan] : edge_fans(boundary.triangles))
+    if (fan.size() == 2 && boundary.parents[fan[0].facet] == boundary.parents[fan[1].facet])
+      sets.join(fan[0].facet, fan[1].facet);
+  std::map<std::uint32_t, std::vector<std::uint32_t>> regions;
+  for (std::uint32_t f = 0; f < boundary.triangles.size(); ++f) regions[sets.root(f)].push_back(f);
+  return regions;
+}
+
+/// The outline of a region as loops that walk as its triangles do; empty when it touches itself.
+std::vector<Ring> loops_of(const Boundary& boundary, const std::vector<std::uint32_t>& region) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> walked;
+  for (const std::uint32_t f : region)
+    for (std::size_t i = 0; i < 3; ++i)
+      ++walked[{boundary.triangles[f][i], boundary.triangles[f][(i + 1) % 3]}];
+  std::map<std::uint32_t, std::uint32_t> next;
+  for (const auto& [edge, count] : walked) {
+    if (walked.contains({edge.second, edge.first})) continue;
+    if (!next.emplace(edge.first, edge.second).second) return {};
+  }
+  std::vector<Ring> loops;
+  while (!next.empty()) {
+    Ring& loop = loops.emplace_back();
+    for (auto at = next.begin(); at != next.end(); at = next.find(loop.back())) {
+      loop.push_back(at->second);
+      next.erase(at);
+    }
+  }
+  return loops;
+}
+
+/// The polygon of a region; none when it is not one plane polygon.
+std::vector<Ring> polygon_of(const Boundary& boundary, const std::vector<std::uint32_t>& region) {
+  Point3 normal;
+  for (const std::uint32_t f : region) {
+    const Triangle& t = boundary.triangles[f];
+    const Point3 n = normal_of(boundary.points[t[0]], boundary.points[t[1]], boundary.points[t[2]]);
+    normal = {normal.x + n.x, normal.y + n.y, normal.z + n.z};
+  }
+  std::vector<Ring> loops = loops_of(boundary, region);
+  const auto turns_along = [&](const Ring& loop) {
+    return dot(ring_normal(boundary.points, loop), normal) > 0;
+  };
+  if (loops.empty() || std::count_if(loops.begin(), loops.end(), turns_along) != 1) return {};
+  std::iter_swap(loops.begin(), std::find_if(loops.begin(), loops.end(), turns_along));
+
+  const double size = length(normal);
+  const GridPoint& base = boundary.points[loops[0][0]];
+  double low = 0, high = 0;
+  for (const Ring& loop : loops)
+    for (const std::uint32_t v : loop) {
+      const GridPoint& p = boundary.points[v];
+      const double height =
+          dot(normal, {static_cast<double>(p.x - base.x), static_cast<double>(p.y - base.y),
+                       static_cast<double>(p.z - base.z)}) /
+          size;
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+  if ((high - low) * kGridStep_m > kFlat_m) return {};
+
+  const auto filled = triangulate(boundary.points, loops);
+  if (!filled) return {};
+  double area = 0;
+  for (const Triangle& t : *filled)
+    area += length(normal_of(boundary.points[t[0]], boundary.points[t[1]], boundary.points[t[2]]));
+  if (std::abs(area - size) > 0.001 * size) return {};
+  return loops;
+}
+
+}  // namespace
+
+Shell faces_of(const Boundary& boundary, const Shell& input) {
+  Shell shell;
+  shell.points = boundary.points;
+  shell.surface_ids = input.surface_ids;
+  const auto add = [&](std::vector<Ring> rings, std::uint32_t parent) {
+    Face face;
+    if (parent < input.faces.size()) {
+      face = input.faces[parent];
+    } else {
+      face.added = true;
+    }
+    face.rings = std::move(rings);
+    shell.faces.push_back(std::move(face));
+  };
+  for (const auto& [root, region] : regions_of(boundary)) {
+    const std::uint32_t parent = boundary.parents[root];
+    std::vector<Ring> polygon = polygon_of(boundary, region);
+    if (!polygon.empty()) {
+      add(std::move(polygon), parent);
+      continue;
+    }
+    for (const std::uint32_t f : region) {
+      const Triangle& t = boundary.triangles[f];
+      add({{t[0], t[1], t[2]}}, parent);
+    }
+  }
+  return shell;
+}
+
+}  // namespace citymesh
