@@ -38,6 +38,7 @@ struct Surface {
   SurfaceType type = SurfaceType::Unknown;
   std::string gml_id{};
   std::int32_t parent = -1;  ///< for openings: index of the wall or roof in Building::surfaces
+  std::string made_by{};     ///< rung of an earlier healing that made it; empty: of the source
 };
 
 /// "2", "2.2": minor is -1 where the source gives none.

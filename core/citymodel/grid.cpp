@@ -42,7 +42,10 @@ std::variant<Gridded, Issue> grid(const Building& building, const Geometry& geom
     const Surface* surface = polygon.surface >= 0
                                  ? &building.surfaces[static_cast<std::size_t>(polygon.surface)]
                                  : nullptr;
-    if (surface) face.type = surface->type;
+    if (surface) {
+      face.type = surface->type;
+      face.made_by = surface->made_by;
+    }
     const std::string& id = surface && !surface->gml_id.empty() ? surface->gml_id : polygon.gml_id;
     if (!id.empty()) {
       const auto [at, added] =

@@ -16,6 +16,7 @@ struct Face {
   std::uint32_t source = 0;  ///< index into Shell::surface_ids
   bool added = false;        ///< not of the input: closes a hole
   bool cavity = false;       ///< of an interior shell: faces into the hollow
+  std::string made_by{};     ///< rung that made it, perhaps in an earlier run; empty: of the source
 };
 
 /// The boundary of a body on the exact grid: what healing works on and meshing takes. It may be

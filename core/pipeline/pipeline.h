@@ -46,7 +46,7 @@ struct ProcessSpec {
 
 std::span<const ProcessSpec> processes();
 const ProcessSpec* find_process(std::string_view id);
-std::string process_ids();  ///< "export-for-simulation, validate" for messages
+std::string process_ids();  ///< "export-for-simulation, heal, validate" for messages
 
 /// Checks `inputs_json` (a JSON object) against the table and completes it with the defaults, keys
 /// sorted. Errors: NotFound for an unknown process; InvalidArgument naming input, value and what is

@@ -127,6 +127,13 @@ struct ProcessedPart {
   std::optional<Error> refused{};
 };
 
+/// Faces that no source has say which rung made them. A block has none of its source.
+void mark_new_faces(Body& body) {
+  const bool all = body.rung == "lod1_block";
+  for (Face& face : body.mesh.faces)
+    if (all || face.added) face.made_by = body.rung;
+}
+
 ProcessedPart process_part(const Building& building, const std::string& name, const Inputs& inputs,
                            const std::vector<OpenFormat>& formats, const RunContext& context) {
   RoundTripGate gate(formats);
@@ -156,6 +163,8 @@ ProcessedPart process_part(const Building& building, const std::string& name, co
     return processed;
   }
   report.reason.clear();
+  if (report.rung != "as_is" || !healed.issues.empty())
+    report.issues_after = validate(healed.shell, {inputs.planarity_tolerance_m});
   report.repairs = std::move(healed.repairs);
   report.max_displacement_m = healed.max_displacement_m;
   report.deviation_max_m = healed.deviation.max_m;
@@ -171,6 +180,7 @@ ProcessedPart process_part(const Building& building, const std::string& name, co
   body.attributes = building.attributes;
   body.addresses = building.addresses;
   body.mesh = gate.take_mesh();
+  mark_new_faces(body);
   processed.fingerprint = gate.fingerprint();
   report.volume_after_m3 = volume_m3(body.mesh.points, body.mesh.triangles);
   report.triangles = body.mesh.triangles.size();
@@ -186,6 +196,10 @@ void add_up(BuildingReport& report, const PartReport& part) {
   report.max_displacement_m = std::max(report.max_displacement_m, part.max_displacement_m);
   report.deviation_max_m = std::max(report.deviation_max_m, part.deviation_max_m);
   report.deviation_mean_m = std::max(report.deviation_mean_m, part.deviation_mean_m);
+  if (!report.volume_before_m3 || !part.volume_before_m3)
+    report.volume_before_m3.reset();
+  else
+    *report.volume_before_m3 += *part.volume_before_m3;
   report.volume_after_m3 += part.volume_after_m3;
   report.triangles += part.triangles;
 }
@@ -219,6 +233,7 @@ ProcessedBuilding process_building(const NamedBuilding& named, const Inputs& inp
     report.outcome = "dropped";
     report.reason = reason;
     report.rung.clear();
+    if (!members.empty()) report.volume_before_m3.reset();
     report.volume_after_m3 = 0;
     report.triangles = 0;
     for (PartReport& part : report.parts) {
@@ -257,6 +272,7 @@ ProcessedBuilding process_building(const NamedBuilding& named, const Inputs& inp
     report.issues_before = building.source_issues;
   }
   report.outcome = "delivered";
+  if (bodies.empty() && !members.empty()) report.volume_before_m3 = 0;  // that of its parts
   for (std::size_t i = 0; i < members.size(); ++i) {
     ProcessedPart part = process_part(*members[i], named.part_names[i], inputs, formats, context);
     if (part.refused) processed.refused = part.refused;

@@ -32,6 +32,7 @@ struct NamedBuilding {
 struct ProcessedBuilding {
   BuildingReport report{};
   std::optional<BuildingBodies> bodies{};     ///< none when dropped
+  std::vector<SourceBody> sources{};          ///< of what the report shows: see source_bodies.h
   std::vector<std::uint64_t> fingerprints{};  ///< signature of each body's triangles
   std::optional<Error> refused{};  ///< a format that cannot hold the building: the end of the run
 };

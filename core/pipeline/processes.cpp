@@ -12,6 +12,7 @@ constexpr std::array<std::string_view, 3> kAxisOrders{"auto", "east_north", "nor
 constexpr std::array<std::string_view, 2> kInstallations{"drop", "keep"};
 constexpr std::array<std::string_view, 2> kOnFailure{"block", "drop"};
 constexpr std::array<std::string_view, 2> kPatches{"by_object", "by_type"};
+constexpr std::array<std::string_view, 2> kParts{"keep", "merge"};
 
 constexpr OptionSpec kBbox{
     "bbox", OptionKind::BoundingBox, "null",
@@ -49,6 +50,11 @@ constexpr OptionSpec kFailure{
     "What becomes of a building that cannot be healed: its LoD1 block, or dropped with the "
     "reason.",
     kOnFailure};
+constexpr OptionSpec kPart{
+    "parts", OptionKind::Text, "\"keep\"",
+    "Parts of a building that touch or overlap: kept as bodies of their own, or merged into one "
+    "without the walls between them.",
+    kParts};
 constexpr OptionSpec kUnite{"unite_neighbours", OptionKind::Boolean, "false",
                             "Whether buildings in contact become one body."};
 constexpr OptionSpec kPatch{
@@ -78,6 +84,15 @@ constexpr OptionSpec kDisplacement{
     0.0001,
     10.0};
 
+constexpr OptionSpec kHole{
+    "max_hole_area_m2",
+    OptionKind::Number,
+    "10000",
+    "Largest hole that is closed on the rung `healed`; with a larger one the next rung is tried.",
+    {},
+    0,
+    1'000'000};
+
 constexpr std::array kValidateInputs{kBbox,      kBboxRule, kObjectIds, kCrs,      kSourceCrs,
                                      kAxisOrder, kLod,      kSnap,      kPlanarity};
 
@@ -90,19 +105,30 @@ struct Table {
   Table() {
     for (const Format& format : formats()) {
       keys.push_back(format.key);
-      export_outputs.push_back({format.key, format.media_type, format.title});
+      model_outputs.push_back({format.key, format.media_type, format.title});
     }
-    const OptionSpec format{"formats", OptionKind::TextList, "[\"obj\"]", "Formats to write.",
-                            keys};
-    export_inputs = {kBbox,      kBboxRule, kObjectIds,    kCrs,       kSourceCrs,
-                     kAxisOrder, kLod,      kInstallation, format,     kFailure,
-                     kUnite,     kPatch,    kSnap,         kPlanarity, kDisplacement};
+    const auto format = [this](std::string_view default_json) {
+      return OptionSpec{"formats", OptionKind::TextList, default_json, "Formats to write.", keys};
+    };
+    heal_inputs = {kBbox,      kBboxRule,     kObjectIds,
+                   kCrs,       kSourceCrs,    kAxisOrder,
+                   kLod,       kInstallation, format("[\"cityjson\"]"),
+                   kFailure,   kPart,         kSnap,
+                   kPlanarity, kDisplacement, kHole};
+    export_inputs = {
+        kBbox,  kBboxRule,     kObjectIds,          kCrs,          kSourceCrs, kAxisOrder,
+        kLod,   kInstallation, format("[\"obj\"]"), kFailure,      kPart,      kUnite,
+        kPatch, kSnap,         kPlanarity,          kDisplacement, kHole};
     processes = {
         ProcessSpec{"export-for-simulation", "Export for simulation",
                     "Selects buildings by box or id, heals them, and delivers closed, 2-manifold "
                     "meshes free of self-intersections, with a report of what became of every "
                     "building.",
-                    true, export_inputs, export_outputs},
+                    true, export_inputs, model_outputs},
+        ProcessSpec{"heal", "Heal",
+                    "Repairs buildings and gives the city model back, with ids, attributes, "
+                    "addresses and surface types, and a report of every change.",
+                    false, heal_inputs, model_outputs},
         ProcessSpec{"validate", "Validate", "Finds the defects of buildings and changes nothing.",
                     false, kValidateInputs, kValidateOutputs}};
   }
@@ -110,8 +136,8 @@ struct Table {
   Table& operator=(const Table&) = delete;
 
   std::vector<std::string_view> keys{};
-  std::vector<OptionSpec> export_inputs{};
-  std::vector<OutputSpec> export_outputs{kReportOutput};
+  std::vector<OptionSpec> heal_inputs{}, export_inputs{};
+  std::vector<OutputSpec> model_outputs{kReportOutput};
   std::vector<ProcessSpec> processes{};
 };
 

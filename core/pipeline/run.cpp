@@ -11,6 +11,7 @@
 #include "core/pipeline/names.h"
 #include "core/pipeline/pipeline.h"
 #include "core/pipeline/process_building.h"
+#include "core/pipeline/source_bodies.h"
 #include "core/pipeline/totals.h"
 #include "core/write/write.h"
 
@@ -27,7 +28,7 @@ class Run {
   Run(std::string_view process, CitySource& source, const std::filesystem::path& folder,
       const RunContext& context)
       : process_(process),
-        exporting_(process == "export-for-simulation"),
+        exporting_(process != "validate"),
         source_(source),
         folder_(folder),
         context_(context) {}
@@ -123,6 +124,8 @@ class Run {
         processed[i] = process_building(batch[i], inputs_, formats_, context_);
       else
         processed[i].report = validate_building(batch[i], inputs_);
+      if (processed[i].report.rung != "as_is")
+        processed[i].sources = source_bodies(batch[i], inputs_, processed[i].report);
     });
     if (context_.stopped()) return cancelled();
     time("heal", start);
@@ -141,7 +144,8 @@ class Run {
           if (auto added = open.writer->add(*bodies); !added) return added.error();
       }
       if (!exporting_ && has_defects(building.report)) ++invalid_;
-      if (auto added = report_->add(building.report, bodies); !added) return added.error();
+      if (auto added = report_->add(building.report, bodies, building.sources); !added)
+        return added.error();
     }
     time("write", write_start);
     done_ += batch.size();
@@ -222,7 +226,7 @@ class Run {
   void time(const std::string& stage, double since) { stages_s_[stage] += context_.now() - since; }
 
   std::string process_;
-  bool exporting_;
+  bool exporting_;  ///< writes bodies; `validate` only looks
   CitySource& source_;
   const std::filesystem::path& folder_;
   const RunContext& context_;

@@ -298,6 +298,9 @@ void CityGmlParser::start_in_surface(const ElementName& element, std::string_vie
     case Tag::FillingProperty:
       push(Ctx::FillingProperty, element).in_shell = false;
       return;
+    case Tag::GenericText:
+    case Tag::GenericProperty:
+      return start_generic(element, attributes);
     case Tag::BoundaryProperty:  // of the volume of a window
       push(Ctx::BoundaryProperty, element);
       return;

@@ -49,6 +49,13 @@ void CityGmlParser::end_generic(const Frame& frame) {
   }
   if (name_.empty()) return;
   const std::string name = generic_name();
+  if (frame.surface >= 0) {  // of surfaces only our own mark is of use
+    if (name == "citymesh_rung" && frame.object >= 0)
+      feature_.objects[static_cast<std::size_t>(frame.object)]
+          .surfaces[static_cast<std::size_t>(frame.surface)]
+          .made_by = generic_value_;
+    return;
+  }
   if (frame.tag == Tag::GenericWhole) {
     if (const auto whole = number_from<std::int64_t>(generic_value_))
       return add_attribute(frame.object, name, *whole);

@@ -211,6 +211,7 @@ class GeometryBuilder {
         if (const auto type = text_member(semantic, "type"))
           surface.type = surface_type_from(*type).value_or(SurfaceType::Unknown);
         if (const auto id = text_member(semantic, "id")) surface.gml_id = *id;
+        if (const auto rung = text_member(semantic, "citymesh_rung")) surface.made_by = *rung;
         std::uint64_t parent = 0;
         if (semantic["parent"].get(parent) == simdjson::SUCCESS && parent < surfaces.size())
           surface.parent = static_cast<std::int32_t>(first_surface_ + parent);

@@ -221,39 +221,6 @@ void append_standard(std::string& xml, CityGml version, const StandardAttribute&
   }
 }
 
-void append_generic(std::string& xml, CityGml version, std::string_view name,
-                    const AttributeValue& value) {
-  const bool integer = std::holds_alternative<std::int64_t>(value);
-  const bool number = std::holds_alternative<double>(value);
-  const std::string text = text_of(value);
-  if (version == CityGml::V2) {
-    const std::string_view element = integer  ? "gen:intAttribute"
-                                     : number ? "gen:doubleAttribute"
-                                              : "gen:stringAttribute";
-    xml += '<';
-    xml += element;
-    xml += " name=\"";
-    append_markup(xml, name);
-    xml += "\">\n";
-    append_element(xml, "gen:value", text);
-    xml += "</";
-    xml += element;
-    xml += ">\n";
-    return;
-  }
-  const std::string_view element = integer  ? "gen:IntAttribute"
-                                   : number ? "gen:DoubleAttribute"
-                                            : "gen:StringAttribute";
-  xml += "<genericAttribute>\n<";
-  xml += element;
-  xml += ">\n";
-  append_element(xml, "gen:name", name);
-  append_element(xml, "gen:value", text);
-  xml += "</";
-  xml += element;
-  xml += ">\n</genericAttribute>\n";
-}
-
 /// The attributes of an object, each with the element that holds it; without one it is generic.
 class Sorted {
  public:
@@ -277,7 +244,8 @@ class Sorted {
         append_standard(xml, version_, *attribute, text);
   }
   void append_generic_ones(std::string& xml) const {
-    for (const auto& [name, value] : generic_) append_generic(xml, version_, name, *value);
+    for (const auto& [name, value] : generic_)
+      append_generic_attribute(xml, version_, name, *value);
   }
 
  private:
@@ -351,6 +319,39 @@ void append_xal3(std::string& xml, const Address& address) {
 }
 
 }  // namespace
+
+void append_generic_attribute(std::string& xml, CityGml version, std::string_view name,
+                              const AttributeValue& value) {
+  const bool integer = std::holds_alternative<std::int64_t>(value);
+  const bool number = std::holds_alternative<double>(value);
+  const std::string text = text_of(value);
+  if (version == CityGml::V2) {
+    const std::string_view element = integer  ? "gen:intAttribute"
+                                     : number ? "gen:doubleAttribute"
+                                              : "gen:stringAttribute";
+    xml += '<';
+    xml += element;
+    xml += " name=\"";
+    append_markup(xml, name);
+    xml += "\">\n";
+    append_element(xml, "gen:value", text);
+    xml += "</";
+    xml += element;
+    xml += ">\n";
+    return;
+  }
+  const std::string_view element = integer  ? "gen:IntAttribute"
+                                   : number ? "gen:DoubleAttribute"
+                                            : "gen:StringAttribute";
+  xml += "<genericAttribute>\n<";
+  xml += element;
+  xml += ">\n";
+  append_element(xml, "gen:name", name);
+  append_element(xml, "gen:value", text);
+  xml += "</";
+  xml += element;
+  xml += ">\n</genericAttribute>\n";
+}
 
 void append_attributes_before_geometry(std::string& xml, CityGml version, const CityObject& object,
                                        std::string_view rung) {

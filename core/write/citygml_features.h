@@ -18,6 +18,10 @@ void append_attributes_before_geometry(std::string& xml, CityGml version, const 
 /// Only in 3.0: attributes of constructions and buildings.
 void append_attributes_after_geometry(std::string& xml, CityGml version, const CityObject& object);
 
+/// An attribute that the schema has no element for; flags become texts.
+void append_generic_attribute(std::string& xml, CityGml version, std::string_view name,
+                              const AttributeValue& value);
+
 /// Addresses as xAL 2 (in CityGML 2.0) or xAL 3. The first has the id "<id>0".
 void append_gml_addresses(std::string& xml, CityGml version, const std::vector<Address>& addresses,
                           const std::string& id);

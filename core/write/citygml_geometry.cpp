@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "core/write/citygml_features.h"
 #include "core/write/extent.h"
 #include "core/write/solids.h"
 #include "core/write/text.h"
@@ -19,10 +21,11 @@ bool is_opening(SurfaceType type) {
   return type == SurfaceType::Window || type == SurfaceType::Door;
 }
 
-/// Faces of one (type, source surface).
+/// Faces of one (type, source surface, rung that made it).
 struct Surface {
   SurfaceType type = SurfaceType::Unknown;
   std::string id{};
+  std::string_view made_by{};
   std::vector<std::size_t> faces{};
   std::vector<std::size_t> openings{};  ///< surfaces that lie in this one
 };
@@ -132,7 +135,7 @@ class Builder {
   void group() {
     surface_of_face_.assign(mesh_.faces.size(), kNone);
     polygon_ids_.resize(mesh_.faces.size());
-    std::map<std::pair<SurfaceType, std::uint32_t>, std::size_t> known;
+    std::map<std::tuple<SurfaceType, std::uint32_t, std::string_view>, std::size_t> known;
     for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
       const Face& face = mesh_.faces[f];
       const std::string_view source = face.source < mesh_.surface_ids.size()
@@ -142,9 +145,11 @@ class Builder {
         polygon_ids_[f] = ids_.take(source, 'p', f);
         continue;
       }
-      const auto [at, is_new] = known.try_emplace({face.type, face.source}, surfaces_.size());
+      const auto [at, is_new] =
+          known.try_emplace({face.type, face.source, face.made_by}, surfaces_.size());
       if (is_new)
-        surfaces_.push_back({face.type, ids_.take(source, 'b', surfaces_.size()), {}, {}});
+        surfaces_.push_back(
+            {face.type, ids_.take(source, 'b', surfaces_.size()), face.made_by, {}, {}});
       surfaces_[at->second].faces.push_back(f);
       surface_of_face_[f] = at->second;
     }
@@ -169,7 +174,7 @@ class Builder {
         host = kNone;
       if (host == kNone) {  // the schema wants one: a wall that is nothing but its opening
         host = surfaces_.size();
-        surfaces_.push_back({SurfaceType::WallSurface, ids_.generated('h', s), {}, {}});
+        surfaces_.push_back({SurfaceType::WallSurface, ids_.generated('h', s), {}, {}, {}});
       }
       surfaces_[host].openings.push_back(s);
     }
@@ -197,6 +202,8 @@ class Builder {
     const std::string_view opening =
         version_ == CityGml::V2 ? "bldg:opening" : "con:fillingSurface";
     xml += '<' + name + " gml:id=\"" + surface.id + "\">\n";
+    if (!surface.made_by.empty())
+      append_generic_attribute(xml, version_, "citymesh_rung", std::string(surface.made_by));
     if (!surface.faces.empty()) {
       xml += '<' + multi + ">\n<gml:MultiSurface" + id('m', multi_surfaces_++) + ">\n";
       for (const std::size_t f : surface.faces) append_polygon(xml, f);

@@ -1,6 +1,7 @@
 #include "core/write/cityjson_objects.h"
 
-#include <unordered_map>
+#include <map>
+#include <tuple>
 #include <utility>
 
 #include "core/write/json_values.h"
@@ -23,12 +24,10 @@ std::string crs_uri(const Crs& crs) {
   return "https://www.opengis.net/def/crs/" + authority + '/' + version + '/' + code;
 }
 
-/// Semantic surfaces of a mesh: one for each (type, source surface), in order of first appearance.
+/// Semantic surfaces of a mesh: one for each (type, source surface, rung that made it), in order of
+/// first appearance.
 struct Semantics {
-  struct Surface {
-    SurfaceType type;
-    std::uint32_t source;
-  };
+  using Surface = std::tuple<SurfaceType, std::uint32_t, std::string_view>;
   std::vector<Surface> surfaces{};
   std::vector<std::int32_t> values{};  ///< per face; -1: no semantics
 };
@@ -36,16 +35,16 @@ struct Semantics {
 Semantics semantics_of(const TriangleMesh& mesh) {
   Semantics semantics;
   semantics.values.reserve(mesh.faces.size());
-  std::unordered_map<std::uint64_t, std::int32_t> known;
+  std::map<Semantics::Surface, std::int32_t> known;
   for (const Face& face : mesh.faces) {
     if (face.type == SurfaceType::Unknown) {
       semantics.values.push_back(-1);
       continue;
     }
-    const std::uint64_t key = (static_cast<std::uint64_t>(face.type) << 32) | face.source;
     const auto [entry, is_new] =
-        known.try_emplace(key, static_cast<std::int32_t>(semantics.surfaces.size()));
-    if (is_new) semantics.surfaces.push_back({face.type, face.source});
+        known.try_emplace({face.type, face.source, face.made_by},
+                          static_cast<std::int32_t>(semantics.surfaces.size()));
+    if (is_new) semantics.surfaces.push_back(entry->first);
     semantics.values.push_back(entry->second);
   }
   return semantics;
@@ -128,12 +127,16 @@ void CityJsonObjects::append_geometry(const Body& body) {
   if (!semantics.surfaces.empty()) {
     objects_ += ",\"semantics\":{\"surfaces\":[";
     for (std::size_t i = 0; i < semantics.surfaces.size(); ++i) {
-      const auto& surface = semantics.surfaces[i];
+      const auto& [type, source, made_by] = semantics.surfaces[i];
       objects_ += i == 0 ? "{\"type\":" : ",{\"type\":";
-      append_json_string(objects_, to_string(surface.type));
-      if (surface.source < mesh.surface_ids.size() && !mesh.surface_ids[surface.source].empty()) {
+      append_json_string(objects_, to_string(type));
+      if (source < mesh.surface_ids.size() && !mesh.surface_ids[source].empty()) {
         objects_ += ",\"id\":";
-        append_json_string(objects_, mesh.surface_ids[surface.source]);
+        append_json_string(objects_, mesh.surface_ids[source]);
+      }
+      if (!made_by.empty()) {
+        objects_ += ",\"citymesh_new\":true,\"citymesh_rung\":";
+        append_json_string(objects_, made_by);
       }
       objects_ += '}';
     }

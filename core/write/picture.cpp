@@ -2,170 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
+#include "core/write/drawing.h"
+#include "core/write/html.h"
 #include "core/write/painter.h"
 #include "core/write/text.h"
 
 namespace citymesh {
 namespace {
 
+constexpr std::string_view kOnlyChecks = "validate";
 constexpr double kWidth = 1400;
 constexpr double kMargin = 40;
 constexpr double kTitleHeight = 96;
 constexpr double kFooterHeight = 84;
 constexpr double kMinScene = 420, kMaxScene = 900;  // height of the scene
-constexpr int kShades = 14;
-
-Point3 metres(const DrawnFace::Corner& c) {
-  return {c[0] / kGridStepsPerMetre, c[1] / kGridStepsPerMetre, c[2] / kGridStepsPerMetre};
-}
-
-double dot(const Point3& a, const Point3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
-/// From view space to the page: tenths of a pixel, y down.
-struct Page {
-  double scale = 1;  ///< pixels in a metre
-  double left = 0, top = 0;
-
-  std::array<std::int64_t, 2> tenths(const Point3& view) const {
-    return {std::llround(10 * (left + scale * view.x)),
-            std::llround(10 * (top - scale * screen_y(view)))};
-  }
-};
-
-void append_tenths(std::string& out, std::int64_t tenths) {
-  if (tenths < 0) out += '-';
-  const std::int64_t magnitude = tenths < 0 ? -tenths : tenths;
-  append_integer(out, magnitude / 10);
-  if (magnitude % 10 != 0) {
-    out += '.';
-    out += static_cast<char>('0' + magnitude % 10);
-  }
-}
-
-void append_px(std::string& out, double px) { append_tenths(out, std::llround(10 * px)); }
-
-using Outline = std::vector<std::array<std::int64_t, 2>>;
-
-/// Smaller than half a pixel in both directions.
-bool is_speck(const Outline& outline) {
-  constexpr std::int64_t kSpeck_tenths = 5;
-  auto low = outline[0], high = outline[0];
-  for (const auto& at : outline)
-    for (std::size_t i = 0; i < 2; ++i) {
-      low[i] = std::min(low[i], at[i]);
-      high[i] = std::max(high[i], at[i]);
-    }
-  return high[0] - low[0] < kSpeck_tenths && high[1] - low[1] < kSpeck_tenths;
-}
-
-/// Page outline of a ring without repeated points; empty when nothing is left to see.
-template <class Ring>
-Outline outline_of(const Page& page, const Ring& ring) {
-  Outline outline;
-  for (const Point3& p : ring) {
-    const auto at = page.tenths(p);
-    if (outline.empty() || outline.back() != at) outline.push_back(at);
-  }
-  while (outline.size() > 1 && outline.front() == outline.back()) outline.pop_back();
-  if (outline.size() < 3 || is_speck(outline)) outline.clear();
-  return outline;
-}
-
-void append_outline(std::string& out, const Outline& outline) {
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    auto [x, y] = outline[i];
-    out += i == 0 ? 'M' : i == 1 ? 'l' : ' ';
-    if (i > 0) {
-      x -= outline[i - 1][0];
-      y -= outline[i - 1][1];
-    }
-    append_tenths(out, x);
-    if (y >= 0) out += ' ';
-    append_tenths(out, y);
-  }
-  if (!outline.empty()) out += 'z';
-}
-
-// ---- colours ----
-
-using Colour = std::array<std::uint8_t, 3>;
-
-Colour mix(const Colour& a, const Colour& b, double share_of_b) {
-  Colour c{};
-  for (std::size_t i = 0; i < 3; ++i)
-    c[i] = static_cast<std::uint8_t>(std::lround(a[i] + (b[i] - a[i]) * share_of_b));
-  return c;
-}
-
-/// `light` from 0 (in the shade) to 1 (full sun): shade turns bluish, sun turns white.
-Colour shaded(const Colour& base, DrawnFace::Kind kind, double light) {
-  constexpr Colour kShade{52, 62, 92}, kWhite{255, 255, 252}, kGlass{64, 88, 112};
-  switch (kind) {
-    case DrawnFace::Kind::Wall:
-      return mix(mix(base, kShade, 0.46), mix(base, kWhite, 0.12), light);
-    case DrawnFace::Kind::Roof:
-      return mix(mix(base, kShade, 0.20), mix(base, kWhite, 0.72), light);
-    case DrawnFace::Kind::Opening:
-      return mix(mix(kGlass, kShade, 0.35), mix(kGlass, kWhite, 0.25), light);
-  }
-  return base;
-}
-
-void append_colour(std::string& out, const Colour& colour) {
-  constexpr std::string_view kHex = "0123456789abcdef";
-  out += '#';
-  for (const std::uint8_t c : colour) {
-    out += kHex[c >> 4];
-    out += kHex[c & 15];
-  }
-}
-
-/// Class of a face: rung letter, kind letter, shade number. "cw7"
-std::string class_of(std::size_t rung, DrawnFace::Kind kind, int shade) {
-  std::string name;
-  name += static_cast<char>('a' + rung);
-  name += kind == DrawnFace::Kind::Wall ? 'w' : kind == DrawnFace::Kind::Roof ? 'r' : 'o';
-  append_integer(name, shade);
-  return name;
-}
-
-int shade_of(const Point3& normal) {
-  const double light = std::max(0.0, dot(normal, kSun));
-  return static_cast<int>(std::lround(light * (kShades - 1)));
-}
-
-Colour fill_of(const DrawnFace& face) {
-  return shaded(rung_style(face.rung).colour, face.kind,
-                static_cast<double>(shade_of(face.normal)) / (kShades - 1));
-}
-
-std::string style(const std::vector<DrawnFace>& faces, double stroke) {
-  constexpr std::size_t kKinds = 3;
-  std::vector<char> used((kRungStyles.size() + 1) * kKinds * kShades, 0);
-  for (const DrawnFace& face : faces)
-    used[(face.rung * kKinds + static_cast<std::size_t>(face.kind)) * kShades +
-         static_cast<std::size_t>(shade_of(face.normal))] = 1;
-  std::string css = "<style>#citymesh-picture .f path{stroke-width:";
-  append_number(css, stroke, 2);
-  css += ";stroke-linejoin:round;fill-rule:evenodd}";
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    if (used[i] == 0) continue;
-    const auto kind = static_cast<DrawnFace::Kind>(i / kShades % kKinds);
-    const int shade = static_cast<int>(i % kShades);
-    const std::size_t rung = i / kShades / kKinds;
-    const Colour fill =
-        shaded(rung_style(rung).colour, kind, static_cast<double>(shade) / (kShades - 1));
-    css += "#citymesh-picture .";
-    css += class_of(rung, kind, shade);
-    css += "{fill:";
-    append_colour(css, fill);
-    css += ";stroke:";
-    append_colour(css, mix(fill, {38, 44, 62}, 0.42));
-    css += '}';
-  }
-  return css + "</style>\n";
-}
 
 // ---- ground ----
 
@@ -228,12 +80,6 @@ void append_text(std::string& svg, double x, double y, std::string_view classes,
   svg += "\">";
   append_markup(svg, text);
   svg += "</text>\n";
-}
-
-std::string grouped_digits(std::uint64_t value) {
-  std::string text = std::to_string(value);
-  for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, "\u202f");
-  return text;
 }
 
 /// All that is drawn, in view space, and where on the page.
@@ -357,77 +203,6 @@ void append_shadows(std::string& svg, const Drawing& drawing) {
   svg += "</g></g>\n";
 }
 
-/// Those edges of a triangle that are edges of the whole face.
-std::string face_edges(const Page& page, const PaintFace& face, std::int32_t triangle) {
-  std::string path;
-  const auto& corners = face.triangles[static_cast<std::size_t>(triangle)];
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Point3 &a = corners[i], &b = corners[(i + 1) % 3];
-    for (const auto& ring : face.rings)
-      for (std::size_t j = 0; j < ring.size(); ++j) {
-        if (!(ring[j] == a) || !(ring[(j + 1) % ring.size()] == b)) continue;
-        const auto from = page.tenths(a), to = page.tenths(b);
-        path += 'M';
-        append_tenths(path, from[0]);
-        path += ' ';
-        append_tenths(path, from[1]);
-        path += 'L';
-        append_tenths(path, to[0]);
-        path += ' ';
-        append_tenths(path, to[1]);
-      }
-  }
-  return path;
-}
-
-void append_faces(std::string& svg, const Drawing& drawing) {
-  std::vector<PaintFace> faces;
-  for (std::uint32_t i = 0; i < drawing.faces.size(); ++i) {
-    const DrawnFace& drawn = drawing.faces[i];
-    PaintFace face;
-    face.normal = to_view(drawn.normal);
-    if (towards_viewer(face.normal) <= 1e-6) continue;
-    face.paint = i;
-    for (const auto& ring : drawn.rings) {
-      auto& corners = face.rings.emplace_back();
-      for (const auto& corner : ring) corners.push_back(to_view(metres(corner)));
-    }
-    for (const auto& triangle : drawn.triangles)
-      face.triangles.push_back({to_view(metres(triangle[0])), to_view(metres(triangle[1])),
-                                to_view(metres(triangle[2]))});
-    faces.push_back(std::move(face));
-  }
-
-  svg += "<g class=\"f\">\n";
-  for (const PaintStep& step : painting_order(faces)) {
-    const PaintFace& face = faces[step.face];
-    const DrawnFace& drawn = drawing.faces[face.paint];
-    std::string path;
-    if (step.triangle < 0) {
-      for (const auto& ring : face.rings) append_outline(path, outline_of(drawing.page, ring));
-    } else {
-      append_outline(
-          path, outline_of(drawing.page, face.triangles[static_cast<std::size_t>(step.triangle)]));
-    }
-    if (path.empty()) continue;
-    svg += "<path class=\"" + class_of(drawn.rung, drawn.kind, shade_of(drawn.normal));
-    if (step.triangle < 0) {
-      svg += "\" d=\"" + path + "\"/>\n";
-      continue;
-    }
-    // A piece of a face: its stroke hides the seam to the next piece, edges of the face come on
-    // top.
-    svg += "\" style=\"stroke-width:.9;stroke:";
-    append_colour(svg, fill_of(drawn));
-    svg += "\" d=\"" + path + "\"/>\n";
-    const std::string edges = face_edges(drawing.page, face, step.triangle);
-    if (!edges.empty())
-      svg += "<path class=\"" + class_of(drawn.rung, drawn.kind, shade_of(drawn.normal)) +
-             "\" style=\"fill:none\" d=\"" + edges + "\"/>\n";
-  }
-  svg += "</g>\n";
-}
-
 void append_north_arrow(std::string& svg, double x, double y) {
   constexpr double kRadius = 30;
   const auto on_page = [&](double east, double north) {
@@ -472,19 +247,24 @@ void append_scale_bar(std::string& svg, double x, double y, double scale) {
   append_text(svg, x + px, y - 7, "s e", label + (length >= 1000 ? " km" : " m"));
 }
 
-void append_legend(std::string& svg, const RunReport& report, double y) {
+struct LegendEntry {
+  std::string name{};
+  std::uint64_t count = 0;
+  Colour colour{};
+};
+
+void append_legend(std::string& svg, const std::vector<LegendEntry>& entries, double y) {
   double x = kWidth - kMargin;
-  for (auto entry = report.rungs.rbegin(); entry != report.rungs.rend(); ++entry) {
-    if (entry->second == 0) continue;
-    const std::string label = entry->first + "\u2002" + grouped_digits(entry->second);
-    x -= 8.2 * static_cast<double>(entry->first.size()) +
-         9.2 * static_cast<double>(std::to_string(entry->second).size()) + 52;
-    const Colour& base = rung_style(rung_index(entry->first)).colour;
+  for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry) {
+    if (entry->count == 0) continue;
+    const std::string label = entry->name + "\u2002" + grouped(entry->count);
+    x -= 8.2 * static_cast<double>(entry->name.size()) +
+         9.2 * static_cast<double>(std::to_string(entry->count).size()) + 52;
     // A small cube in the light of the scene.
     const std::array<std::pair<std::string_view, Colour>, 3> sides{
-        {{"l8-4.5 8 4.5-8 4.5z", shaded(base, DrawnFace::Kind::Roof, 0.75)},
-         {"l8 4.5v9l-8-4.5z", shaded(base, DrawnFace::Kind::Wall, 0.05)},
-         {"m8 4.5l8-4.5v9l-8 4.5z", shaded(base, DrawnFace::Kind::Wall, 0.6)}}};
+        {{"l8-4.5 8 4.5-8 4.5z", shaded(entry->colour, DrawnFace::Kind::Roof, 0.75)},
+         {"l8 4.5v9l-8-4.5z", shaded(entry->colour, DrawnFace::Kind::Wall, 0.05)},
+         {"m8 4.5l8-4.5v9l-8 4.5z", shaded(entry->colour, DrawnFace::Kind::Wall, 0.6)}}};
     for (const auto& [path, colour] : sides) {
       svg += "<path fill=\"";
       append_colour(svg, colour);
@@ -497,6 +277,26 @@ void append_legend(std::string& svg, const RunReport& report, double y) {
     }
     append_text(svg, x + 23, y, "k", label);
   }
+}
+
+/// Where the defects are, on top of everything.
+void append_marks(std::string& svg, const Page& page, const std::vector<Point3>& marks) {
+  if (marks.empty()) return;
+  constexpr std::int64_t kApart_tenths = 40;  // nearer ones are one mark
+  std::set<std::array<std::int64_t, 2>> places;
+  std::string radius;
+  append_px(radius, std::clamp(0.5 * page.scale, 2.0, 5.0));
+  svg += "<g fill=\"#c8102e\" fill-opacity=\".8\" stroke=\"#fff\" stroke-width=\".8\">\n";
+  for (const Point3& mark : marks) {
+    const auto at = page.tenths(to_view(mark));
+    if (!places.insert({at[0] / kApart_tenths, at[1] / kApart_tenths}).second) continue;
+    svg += "<circle cx=\"";
+    append_tenths(svg, at[0]);
+    svg += "\" cy=\"";
+    append_tenths(svg, at[1]);
+    svg += "\" r=\"" + radius + "\"/>\n";
+  }
+  svg += "</g>\n";
 }
 
 }  // namespace
@@ -516,9 +316,18 @@ std::string Picture::svg(const RunReport& report) const {
   const Drawing drawing = lay_out(std::move(faces), blocks_);
 
   const std::string title = report.process.empty() ? "citymesh" : report.process;
-  std::string subtitle = grouped_digits(report.counts.delivered) +
-                         (report.counts.delivered == 1 ? " building" : " buildings") +
-                         " delivered of " + grouped_digits(report.counts.requested);
+  std::vector<LegendEntry> legend;
+  std::string subtitle;
+  if (report.process == kOnlyChecks) {
+    subtitle = plural(report.counts.requested, "building", "buildings") + " checked";
+    for (std::size_t i = 0; i < sources_.size(); ++i)
+      legend.push_back({std::string(kStyles[i].meaning), sources_[i], kStyles[i].colour});
+  } else {
+    subtitle = plural(report.counts.delivered, "building", "buildings") + " delivered of " +
+               grouped(report.counts.requested);
+    for (const auto& [rung, count] : report.rungs)
+      legend.push_back({rung, count, kStyles[rung_style(rung)].colour});
+  }
   if (!report.crs.id.empty()) subtitle += "  ·  " + report.crs.id;
   subtitle += "  ·  origin ";
   append_number(subtitle, report.origin.x, 4);
@@ -529,7 +338,7 @@ std::string Picture::svg(const RunReport& report) const {
   subtitle += " m";
   if (as_blocks_) {
     subtitle += "  ·  shown as blocks";
-    if (blocks_.size() < bodies_) subtitle += ", the largest " + grouped_digits(blocks_.size());
+    if (blocks_.size() < bodies_) subtitle += ", the largest " + grouped(blocks_.size());
   }
 
   std::string svg =
@@ -539,7 +348,11 @@ std::string Picture::svg(const RunReport& report) const {
   svg += "<title>";
   append_markup(svg, title + ": " + subtitle);
   svg += "</title>\n";
-  svg += style(drawing.faces, std::clamp(0.16 * drawing.page.scale, 0.12, 0.7));
+  Looks looks;
+  looks.add(drawing.faces);
+  svg += "<style>" +
+         looks.css("#citymesh-picture", std::clamp(0.16 * drawing.page.scale, 0.12, 0.7)) +
+         "</style>\n";
   svg +=
       "<style>#citymesh-picture text{fill:#2f3b52}"
       "#citymesh-picture .h{font-size:25px;font-weight:600}"
@@ -560,15 +373,19 @@ std::string Picture::svg(const RunReport& report) const {
 
   append_ground(svg, drawing);
   append_shadows(svg, drawing);
-  append_faces(svg, drawing);
+  append_faces(svg, drawing.page, drawing.faces);
+  append_marks(svg, drawing.page, marks_);
 
   append_text(svg, kMargin, 50, "h", title);
   append_text(svg, kMargin, 75, "u", subtitle);
   const double foot = drawing.height - 34;
   append_scale_bar(svg, kMargin, foot - 4, drawing.page.scale);
-  append_legend(svg, report, foot + 3);
+  append_legend(svg, legend, foot + 3);
   append_north_arrow(svg, kWidth - kMargin - 40, 66);
-  if (empty) append_text(svg, kWidth / 2, drawing.height / 2, "m", "No building was delivered");
+  if (empty)
+    append_text(
+        svg, kWidth / 2, drawing.height / 2, "m",
+        report.process == kOnlyChecks ? "There is nothing to see" : "No building was delivered");
   return svg + "</svg>\n";
 }
 

@@ -3,25 +3,20 @@
 #include <cstdlib>
 #include <unordered_map>
 
+#include "core/geometry/triangulation.h"
+#include "core/write/findings.h"
 #include "core/write/painter.h"
 #include "core/write/picture.h"
+#include "core/write/shell_faces.h"
 #include "core/write/writers.h"
 
 namespace citymesh {
 namespace {
 
 constexpr double kSamePlane_cos = 0.9994;  // 2 degrees
-constexpr double kRoofNormal_z = 0.3;      // steeper faces look like walls
-
-double dot(const Point3& a, const Point3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 bool is_opening(SurfaceType type) {
   return type == SurfaceType::Window || type == SurfaceType::Door;
-}
-
-DrawnFace::Corner corner_of(const GridPoint& p) {
-  return {static_cast<std::int32_t>(p.x), static_cast<std::int32_t>(p.y),
-          static_cast<std::int32_t>(p.z)};
 }
 
 std::uint64_t edge_key(std::uint32_t from, std::uint32_t to) {
@@ -90,6 +85,22 @@ std::vector<std::vector<DrawnFace::Corner>> chain_rings(
   return rings;
 }
 
+std::int32_t lowest(const std::vector<GridPoint>& points) {
+  return static_cast<std::int32_t>(
+      std::min_element(points.begin(), points.end(), [](const GridPoint& a, const GridPoint& b) {
+        return a.z < b.z;
+      })->z);
+}
+
+/// What of a boundary can be triangulated.
+std::vector<Triangle> triangles_of(const Shell& shell) {
+  std::vector<Triangle> all;
+  for (const Face& face : shell.faces)
+    if (const auto triangles = triangulate(shell.points, face.rings))
+      all.insert(all.end(), triangles->begin(), triangles->end());
+  return all;
+}
+
 bool is_seen(const Point3& normal) {
   return towards_viewer(to_view(normal)) > 1e-6 || dot(normal, kSun) > 1e-6;
 }
@@ -150,7 +161,7 @@ std::vector<DrawnFace> drawn_faces(const DrawnBlock& block) {
     face.rings.push_back(std::move(ring));
     face.normal = normal;
     face.kind = kind;
-    face.rung = block.rung;
+    face.style = block.style;
     face.base = block.base;
   };
   std::vector<DrawnFace::Corner> roof;
@@ -167,9 +178,8 @@ std::vector<DrawnFace> drawn_faces(const DrawnBlock& block) {
   return faces;
 }
 
-void Picture::add_faces(const Body& body, std::uint8_t rung, std::int32_t base) {
-  for (DrawnFace& face : drawn_faces(body.mesh)) {
-    face.rung = rung;
+void Picture::add_faces(std::vector<DrawnFace> faces, std::int32_t base) {
+  for (DrawnFace& face : faces) {
     face.base = base;
     triangles_ += face.triangles.size();
     faces_.push_back(std::move(face));
@@ -180,15 +190,16 @@ void Picture::add_faces(const Body& body, std::uint8_t rung, std::int32_t base) 
   faces_.shrink_to_fit();
 }
 
-void Picture::add_block(const Body& body, std::uint8_t rung, std::int32_t base) {
+void Picture::add_block(std::span<const GridPoint> all_points, std::span<const Triangle> triangles,
+                        std::uint8_t style, std::int32_t base) {
   using Flat = std::array<std::int32_t, 2>;
   std::vector<Flat> points;
   double area = 0, height = 0;  // of what faces up: area in plan, and z weighted by it
-  for (const GridPoint& p : body.mesh.points)
+  for (const GridPoint& p : all_points)
     points.push_back({static_cast<std::int32_t>(p.x), static_cast<std::int32_t>(p.y)});
-  for (const Triangle& t : body.mesh.triangles) {
-    const Point3 a = to_metres(body.mesh.points[t[0]]), b = to_metres(body.mesh.points[t[1]]),
-                 c = to_metres(body.mesh.points[t[2]]);
+  for (const Triangle& t : triangles) {
+    const Point3 a = to_metres(all_points[t[0]]), b = to_metres(all_points[t[1]]),
+                 c = to_metres(all_points[t[2]]);
     const double plan = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     if (plan <= 0) continue;
     area += plan;
@@ -228,7 +239,7 @@ void Picture::add_block(const Body& body, std::uint8_t rung, std::int32_t base) 
   DrawnBlock block;
   block.base = base;
   block.top = static_cast<std::int32_t>(std::llround(height / area * kGridStepsPerMetre));
-  block.rung = rung;
+  block.style = style;
   block.size = area * (block.top - base);
   block.order = bodies_;
   block.outline = std::move(hull);
@@ -246,13 +257,41 @@ void Picture::add_block(const Body& body, std::uint8_t rung, std::int32_t base) 
 }
 
 void Picture::add(const BuildingBodies& building) {
-  const auto rung = static_cast<std::uint8_t>(rung_index(building.rung));
+  const std::uint8_t style = rung_style(building.rung);
   for (const Body& body : building.bodies) {
     if (body.mesh.points.empty()) continue;
-    std::int64_t base = body.mesh.points.front().z;
-    for (const GridPoint& p : body.mesh.points) base = std::min(base, p.z);
-    if (!as_blocks_) add_faces(body, rung, static_cast<std::int32_t>(base));
-    add_block(body, rung, static_cast<std::int32_t>(base));
+    const std::int32_t base = lowest(body.mesh.points);
+    if (!as_blocks_) {
+      std::vector<DrawnFace> faces = drawn_faces(body.mesh);
+      for (DrawnFace& face : faces) face.style = style;
+      add_faces(std::move(faces), base);
+    }
+    add_block(body.mesh.points, body.mesh.triangles, style, base);
+    ++bodies_;
+  }
+}
+
+void Picture::add(const BuildingReport& report, std::span<const SourceBody> sources) {
+  std::uint8_t style = gravest(report.issues_before);
+  const auto mark = [this](const std::vector<Issue>& issues) {
+    for (const Issue& issue : issues)
+      if (issue.at && marks_.size() < kMaxMarks) marks_.push_back(*issue.at);
+  };
+  mark(report.issues_before);
+  for (const PartReport& part : report.parts) {
+    style = std::max(style, gravest(part.issues_before));
+    mark(part.issues_before);
+  }
+  ++sources_[style];
+  for (const SourceBody& source : sources) {
+    const Shell& shell = source.shell;
+    if (shell.points.empty()) continue;
+    const std::int32_t base = lowest(shell.points);
+    const std::vector<std::uint8_t> styles(shell.faces.size(), style);
+    std::vector<DrawnFace> faces =
+        drawn_faces(shell.points, shell.faces, styles, citymesh::style::kOther);
+    if (!as_blocks_) add_faces(std::move(faces), base);
+    add_block(shell.points, triangles_of(shell), style, base);
     ++bodies_;
   }
 }

@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "core/write/gallery.h"
 #include "core/write/output.h"
 #include "core/write/picture.h"
 #include "core/write/report_html.h"
@@ -12,10 +13,14 @@ namespace {
 /// Buildings grow in two nameless files; the totals, known last, stand before them in the results.
 class FileReportWriter final : public ReportWriter {
  public:
-  FileReportWriter(std::filesystem::path folder, Spool lines, Spool rows)
-      : folder_(std::move(folder)), lines_(std::move(lines)), rows_(std::move(rows)) {}
+  FileReportWriter(std::filesystem::path folder, Spool lines, Spool rows, bool only_checked)
+      : folder_(std::move(folder)),
+        lines_(std::move(lines)),
+        rows_(std::move(rows)),
+        only_checked_(only_checked) {}
 
-  Result<void> add(const BuildingReport& report, const BuildingBodies* bodies) override {
+  Result<void> add(const BuildingReport& report, const BuildingBodies* bodies,
+                   std::span<const SourceBody> sources) override {
     buffer_.clear();
     buffer_ += findings_.buildings == 0 ? "\n    " : ",\n    ";
     append_building_json(buffer_, report);
@@ -26,7 +31,12 @@ class FileReportWriter final : public ReportWriter {
       if (auto written = rows_.write(buffer_); !written) return written;
     }
     findings_.add(report);
-    if (bodies != nullptr) picture_.add(*bodies);
+    if (only_checked_) {
+      picture_.add(report, sources);
+    } else {
+      if (bodies != nullptr) picture_.add(*bodies);
+      gallery_.add(report, bodies, sources);
+    }
     return {};
   }
 
@@ -42,7 +52,7 @@ class FileReportWriter final : public ReportWriter {
 
     head.clear();
     tail.clear();
-    append_page_head(head, report, findings_, svg);
+    append_page_head(head, report, findings_, svg, gallery_.section());
     append_page_tail(tail);
     return write_file("report.html", head, &rows_, tail);
   }
@@ -62,21 +72,23 @@ class FileReportWriter final : public ReportWriter {
   std::filesystem::path folder_;
   Spool lines_;
   Spool rows_;
+  bool only_checked_;
   ReportFindings findings_{};
   Picture picture_{};
+  Gallery gallery_{};
   std::string buffer_{};
 };
 
 }  // namespace
 
 Result<std::unique_ptr<ReportWriter>> ReportWriter::create(const std::filesystem::path& folder,
-                                                           const Scene&) {
+                                                           const Scene& scene) {
   auto lines = Spool::create(folder, "report.json (buildings)");
   if (!lines) return lines.error();
   auto rows = Spool::create(folder, "report.html (buildings)");
   if (!rows) return rows.error();
-  return std::unique_ptr<ReportWriter>(
-      std::make_unique<FileReportWriter>(folder, std::move(*lines), std::move(*rows)));
+  return std::unique_ptr<ReportWriter>(std::make_unique<FileReportWriter>(
+      folder, std::move(*lines), std::move(*rows), scene.process == "validate"));
 }
 
 }  // namespace citymesh

@@ -44,6 +44,14 @@ ul.plain{list-style:none;margin:0;padding:0}ul.plain li{padding:4px 0}
 .warnings ul{margin:0;padding-left:20px}
 figure{margin:16px 0;border:1px solid var(--line);border-radius:12px;overflow:hidden}
 figure svg{display:block;width:100%;height:auto}
+.gallery .grid{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,500px),1fr));gap:16px;margin-top:14px}
+.gallery figure{margin:0}.gallery svg{background:#eef1f5}
+.gallery figcaption{padding:10px 14px 12px;font-size:13.5px;line-height:1.7}
+.gallery figcaption small{color:var(--soft);display:block;line-height:1.45}
+.gallery .id{overflow-wrap:anywhere}.gallery details{margin-top:14px}summary{cursor:pointer;color:var(--accent)}
+.ba circle{fill:#d3312b;fill-opacity:.85;stroke:#fff;stroke-width:1.2}.ba .cut{stroke:#c3cad4;fill:none}
+.keys{display:flex;flex-wrap:wrap;gap:4px 18px;margin:8px 0 0;font-size:13px;color:var(--soft)}
+.keys i{display:inline-block;width:11px;height:11px;border-radius:3px;margin-right:6px}
 a{color:var(--accent)}
 .controls{display:flex;flex-wrap:wrap;gap:10px 14px;align-items:center;margin-bottom:12px}
 .controls input[type=search],.controls select{font:inherit;color:inherit;background:var(--bg);

@@ -5,54 +5,16 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/write/html.h"
 #include "core/write/report_assets.h"
 #include "core/write/report_json.h"
-#include "core/write/rung.h"
+#include "core/write/styles.h"
 #include "core/write/text.h"
 #include "core/write/write.h"
 #include "core/write/writers.h"
 
 namespace citymesh {
 namespace {
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  append_markup(out, text);
-  return out;
-}
-
-/// 1234567 as "1 234 567" with narrow spaces.
-std::string grouped(std::uint64_t value) {
-  std::string text = std::to_string(value);
-  for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, "\u202f");
-  return text;
-}
-
-std::string rounded(double value, int decimals) {
-  if (std::abs(value) >= 10'000 && std::abs(value) < 1e15)
-    return (value < 0 ? "−" : "") +
-           grouped(static_cast<std::uint64_t>(std::llround(std::abs(value))));
-  std::string out;
-  append_number(out, value, decimals);
-  return out;
-}
-
-std::string plural(std::uint64_t count, std::string_view one, std::string_view many) {
-  return grouped(count) + ' ' + std::string(count == 1 ? one : many);
-}
-
-/// "SHELL_NOT_CLOSED" as "shell not closed".
-std::string spoken(std::string_view name) {
-  std::string out(name);
-  for (char& c : out) c = c == '_' ? ' ' : c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-  return out;
-}
-
-std::string css_colour(std::string_view rung) {
-  const auto& c = rung_style(rung_index(rung)).colour;
-  return "rgb(" + std::to_string(c[0]) + ',' + std::to_string(c[1]) + ',' + std::to_string(c[2]) +
-         ')';
-}
 
 std::string percent(std::uint64_t part, std::uint64_t whole) {
   std::string out;
@@ -175,7 +137,7 @@ void append_charts(std::string& html, const RunReport& report, const ReportFindi
   if (!report.rungs.empty()) {
     html += "<section><h2>How the delivered buildings got there</h2><dl class=\"bars\">\n";
     for (const auto& [rung, count] : report.rungs)
-      append_bar(html, rung, rung_style(rung_index(rung)).meaning, count, most(report.rungs),
+      append_bar(html, rung, kStyles[rung_style(rung)].meaning, count, most(report.rungs),
                  css_colour(rung));
     html += "</dl></section>\n";
   }
@@ -294,7 +256,7 @@ void ReportFindings::add(const BuildingReport& building) {
 }
 
 void append_page_head(std::string& html, const RunReport& report, const ReportFindings& findings,
-                      std::string_view picture_svg) {
+                      std::string_view picture_svg, std::string_view gallery) {
   const std::string title = process_title(report.process);
   const bool only_checked = report.process == "validate";
   const Counts& counts = report.counts;
@@ -336,11 +298,10 @@ void append_page_head(std::string& html, const RunReport& report, const ReportFi
       html += "<li>" + escaped(warning) + "</li>\n";
     html += "</ul></section>\n";
   }
-  if (!only_checked) {
-    html += "<figure>\n";
-    html += picture_svg;
-    html += "</figure>\n";
-  }
+  html += "<figure>\n";
+  html += picture_svg;
+  html += "</figure>\n";
+  html += gallery;
   append_charts(html, report, findings);
   append_asked(html, report, parsed_options(report));
 
@@ -371,14 +332,7 @@ void append_row(std::string& html, const BuildingReport& building) {
     html += "<small>" + escaped(building.name) + "</small>";
   if (!building.parts.empty())
     html += "<small>" + plural(building.parts.size(), "part", "parts") + "</small>";
-  html += "</td><td><span class=\"rung";
-  if (delivered) {
-    html += "\" style=\"background:" + css_colour(building.rung);
-  } else {
-    html += building.outcome == "merged" ? " merged" : " dropped";
-  }
-  html += "\" title=\"" + escaped(rung_style(rung_index(building.rung)).meaning) + "\">" +
-          escaped(kind) + "</span>";
+  html += "</td><td>" + rung_chip(building.rung, building.outcome);
   if (!building.reason.empty())
     html += "<small class=\"bad\">" + escaped(building.reason) + "</small>";
   if (!building.merged_into.empty())

@@ -20,10 +20,11 @@ struct ReportFindings {
 
 inline constexpr std::uint64_t kMaxHtmlRows = 5000;
 
-// report.html in three pieces: the page up to the table's rows, a row per building (at most
-// kMaxHtmlRows), the rest. All texts of the data are escaped; nothing is loaded from elsewhere.
+// report.html in three pieces: the page up to the table's rows, with the picture and the gallery (a
+// section, or nothing); a row per building (at most kMaxHtmlRows); the rest. All texts of the data
+// are escaped; nothing is loaded from elsewhere.
 void append_page_head(std::string& html, const RunReport& report, const ReportFindings& findings,
-                      std::string_view picture_svg);
+                      std::string_view picture_svg, std::string_view gallery);
 void append_row(std::string& html, const BuildingReport& building);
 void append_page_tail(std::string& html);
 

@@ -100,6 +100,11 @@ void append_part_members(Members& members, const PartReport& part) {
     members.key("volume_before_m3") += "null";
   }
   members.number("volume_after_m3", part.volume_after_m3);
+  if (part.volume_before_m3 && part.outcome == "delivered") {
+    members.number("volume_change_m3", part.volume_after_m3 - *part.volume_before_m3);
+  } else {
+    members.key("volume_change_m3") += "null";
+  }
   members.count("triangles", part.triangles);
 }
 

@@ -6,11 +6,13 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/result.h"
 #include "core/citymodel/crs.h"
 #include "core/citymodel/mesh.h"
 #include "core/citymodel/report.h"
+#include "core/citymodel/shell.h"
 
 namespace citymesh {
 
@@ -63,16 +65,27 @@ Result<std::unique_ptr<BodyWriter>> open_writer(const Format& format,
                                                 const std::filesystem::path& folder,
                                                 const Scene& scene);
 
+/// A body as its source has it, on the grid: for pictures of what healing changed.
+struct SourceBody {
+  std::string gml_id{};
+  std::string name{};
+  Shell shell{};
+  std::vector<Issue> issues{};
+};
+
 /// report.json, report.html, picture.svg: fed building by building, completed by the totals. Memory
-/// is bounded: the page has the first 5,000 buildings, the picture draws large cities as blocks.
+/// is bounded: the page has the first 5,000 buildings and before/after pictures of those that
+/// changed most, the picture draws large cities as blocks.
 class ReportWriter {
  public:
   static Result<std::unique_ptr<ReportWriter>> create(const std::filesystem::path& folder,
                                                       const Scene& scene);
   virtual ~ReportWriter() = default;
 
-  /// `bodies` is nullptr for a dropped building.
-  virtual Result<void> add(const BuildingReport& report, const BuildingBodies* bodies) = 0;
+  /// `bodies` is nullptr for a dropped building, and when nothing is made of buildings: then the
+  /// picture shows `sources`, coloured by their gravest issue.
+  virtual Result<void> add(const BuildingReport& report, const BuildingBodies* bodies,
+                           std::span<const SourceBody> sources) = 0;
   virtual Result<void> finish(const RunReport& report) = 0;
 };
 

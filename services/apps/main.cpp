@@ -33,6 +33,15 @@ void add_selection(CLI::App& command, RunArguments& arguments) {
   command.footer(kExitCodes);
 }
 
+void add_format(CLI::App& command, RunArguments& arguments) {
+  command
+      .add_option("--format", arguments.inputs.formats,
+                  "formats to write, by comma; available: " + format_keys())
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("FORMAT");
+}
+
 void add_run(CLI::App& program, RunArguments& arguments, int& code) {
   auto& command = *program.add_subcommand("run", "runs a process on files, without a service");
   command.add_option("process", arguments.process, "one of: " + process_ids())
@@ -46,12 +55,7 @@ void add_run(CLI::App& program, RunArguments& arguments, int& code) {
   command.add_option("--output", arguments.output, "folder for the results; created if needed")
       ->required()
       ->type_name("DIR");
-  command
-      .add_option("--format", arguments.inputs.formats,
-                  "formats to write, by comma; available: " + format_keys())
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("FORMAT");
+  add_format(command, arguments);
   add_selection(command, arguments);
   command.callback([&] { code = run_command(arguments); });
 }
@@ -68,6 +72,23 @@ void add_validate(CLI::App& program, RunArguments& arguments, int& code) {
   add_selection(command, arguments);
   command.callback([&] {
     arguments.process = "validate";
+    code = run_command(arguments);
+  });
+}
+
+void add_heal(CLI::App& program, RunArguments& arguments, int& code) {
+  auto& command = *program.add_subcommand(
+      "heal", "repairs the buildings in files and writes the city model again");
+  command.add_option("file", arguments.files, "CityGML or CityJSON files (also .gz), or folders")
+      ->required()
+      ->type_name("FILE");
+  command.add_option("--output", arguments.output, "folder for the results; created if needed")
+      ->required()
+      ->type_name("DIR");
+  add_format(command, arguments);
+  add_selection(command, arguments);
+  command.callback([&] {
+    arguments.process = "heal";
     code = run_command(arguments);
   });
 }
@@ -145,11 +166,12 @@ int run_program(int argc, char** argv) {
   program.get_formatter()->column_width(34);
 
   int code = kDone;
-  RunArguments run_arguments, validate_arguments;
+  RunArguments run_arguments, validate_arguments, heal_arguments;
   IndexArguments index_arguments;
   ServeOptions serve_options;
   add_run(program, run_arguments, code);
   add_validate(program, validate_arguments, code);
+  add_heal(program, heal_arguments, code);
   add_index(program, index_arguments, code);
   add_serve(program, serve_options, code);
   program.add_subcommand("processes", "prints the processes with their inputs and outputs")
@@ -163,8 +185,8 @@ int run_program(int argc, char** argv) {
   }
   if (program.get_subcommands().empty())
     return could_not_run(fail(ErrorCode::InvalidArgument,
-                              "a subcommand is missing, expected one of run, validate, index, "
-                              "serve, processes; --help tells more"));
+                              "a subcommand is missing, expected one of run, validate, heal, "
+                              "index, serve, processes; --help tells more"));
   return code;
 }
 

@@ -153,7 +153,7 @@ std::string example_request_json(const ProcessSpec& process) {
     if (option.kind == OptionKind::BoundingBox)
       inputs[std::string(option.name)] = {{"bbox", {13.40, 52.51, 13.41, 52.52}}, {"crs", kCrs84}};
     else if (option.name == "formats")
-      inputs["formats"] = {"obj"};
+      inputs["formats"] = Json::parse(option.default_json, nullptr, false);
   return dump(Json{{"inputs", std::move(inputs)}});
 }
 

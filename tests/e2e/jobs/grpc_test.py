@@ -31,8 +31,8 @@ class GrpcTest(ServiceTest):
         cls.addClassCleanup(channel.close)
         cls.jobs = jobs_pb2_grpc.JobsStub(channel)
 
-    def submit(self, inputs, outputs=()):
-        request = self.pb.SubmitRequest(process="export-for-simulation", inputs_json=json.dumps(inputs), outputs=outputs)
+    def submit(self, inputs, outputs=(), process="export-for-simulation"):
+        request = self.pb.SubmitRequest(process=process, inputs_json=json.dumps(inputs), outputs=outputs)
         return self.jobs.Submit(request, timeout=LIMIT_S)
 
     def watch(self, job):
@@ -75,6 +75,13 @@ class JobCycle(GrpcTest):
         self.assertEqual(self.service.wait(over_rest)["status"], "successful")
         for name in ("model.obj", "report.json"):
             self.assertEqual(self.fetch(job, name), self.service.get(f"{over_rest}/results/{name}").body)
+
+    def test_heal_gives_the_city_model_back(self):
+        job = self.watch(self.submit({"bbox": CITY}, process="heal"))[-1]
+        self.assertEqual(job.state, self.pb.SUCCESSFUL, job)
+        report, model = json.loads(self.fetch(job, "report")), json.loads(self.fetch(job, "cityjson"))
+        delivered = {building["gml_id"] for building in report["buildings"] if building["outcome"] == "delivered"}
+        self.assertTrue(delivered and delivered <= model["CityObjects"].keys())
 
     def test_box_without_buildings_is_a_success(self):
         job = self.watch(self.submit({"bbox": SEA}))[-1]

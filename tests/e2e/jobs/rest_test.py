@@ -70,6 +70,18 @@ class JobCycle(ServiceTest):
             first, second = (self.service.get(f"{job}/results/{name}").body for job in jobs)
             self.assertEqual(first, second, name)
 
+    def test_heal_gives_the_city_model_back(self):
+        created = self.service.send("POST", "/processes/heal/execution", {"inputs": {"bbox": CITY}})
+        self.assertEqual(created.status, 201, created.body)
+        job = created.headers["Location"]
+        self.assertEqual(self.service.wait(job)["status"], "successful")
+        results = self.service.get(job + "/results").json()
+        self.assertEqual(set(results), {"report", "cityjson"})
+        report, model = (self.service.get(results[name]["href"]).json() for name in ("report", "cityjson"))
+        self.assertEqual(report["process"], "heal")
+        delivered = {building["gml_id"] for building in report["buildings"] if building["outcome"] == "delivered"}
+        self.assertTrue(delivered and delivered <= model["CityObjects"].keys())
+
     def test_results_by_value_in_every_form(self):
         raw = self.service.execute({"bbox": CITY}, outputs={"obj": {}})
         several = self.service.execute({"bbox": CITY}, outputs={"obj": {}, "report": {}})

@@ -81,7 +81,7 @@ TEST(Golden, CityJson) { expect_golden_model("cityjson"); }
 TEST(Golden, Picture) {
   test::TemporaryFolder folder;
   auto writer = ReportWriter::create(folder.path(), {});
-  for (const auto& building : cube_and_house()) ASSERT_TRUE(writer.value()->add({}, &building));
+  for (const auto& building : cube_and_house()) ASSERT_TRUE(writer.value()->add({}, &building, {}));
   RunReport report;
   report.process = "export-for-simulation";
   report.rungs = {{"as_is", 2}};

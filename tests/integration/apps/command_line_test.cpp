@@ -42,6 +42,7 @@ TEST(CommandLine, HelpAndVersionAreOnStdoutEverywhere) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
                                                     {"run", "--help"},
                                                     {"validate", "--help"},
+                                                    {"heal", "--help"},
                                                     {"index", "--help"},
                                                     {"serve", "--help"},
                                                     {"processes", "--help"}}) {
@@ -80,6 +81,9 @@ TEST(CommandLine, WhatCannotRunIsExitCodeTwoAndSaysWhy) {
           "expected minx,miny");
   refused({"run", "export-for-simulation", "--input", kTile, "--output", out, "--set", "a=1"}, "a");
   refused({"validate", "missing.gml"}, "missing.gml");
+  refused({"heal", kTile}, "--output");
+  refused({"heal", "missing.gml", "--output", out}, "missing.gml");
+  refused({"heal", kTile, "--output", out, "--set", "parts=merge"}, "merge");
   refused({"serve", "--data", "missing"}, "missing");
   refused({"serve", "--data", folder.path().string(), "--listen", "here"}, "HOST:PORT");
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
@@ -140,6 +144,23 @@ TEST(CommandLine, ValidatePrintsTheReportToStdout) {
   for (const auto& building : report.at("buildings"))
     defects = defects || !building.at("issues_before").empty();
   EXPECT_EQ(outcome.code, defects ? 1 : 0);
+}
+
+TEST(CommandLine, HealWritesTheCityModelAgain) {
+  const TempFolder folder;
+  const auto outcome = citymesh({"heal", kTile, "--output", (folder / "out").string()});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("heal: 6 buildings selected"), HasSubstr("delivered")));
+  const auto model = nlohmann::json::parse(std::ifstream(folder / "out" / "model.city.json"));
+  const auto report = nlohmann::json::parse(std::ifstream(folder / "out" / "report.json"));
+  EXPECT_EQ(report.at("process"), "heal");
+  for (const auto& building : report.at("buildings"))
+    EXPECT_TRUE(model.at("CityObjects").contains(building.at("gml_id").get<std::string>()));
+
+  const auto run = citymesh({"run", "heal", "--input", kTile, "--output",
+                             (folder / "long").string(), "--format", "cityjson"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(nlohmann::json::parse(std::ifstream(folder / "long" / "model.city.json")), model);
 }
 
 TEST(CommandLine, ASettingTakesOneValueAndLeavesTheFilesAlone) {

@@ -81,6 +81,23 @@ TEST_F(RestOverSocket, JobCycleFromExecutionToDownload) {
   EXPECT_EQ(file.body, "o b_1\nv 0 0 0\n");
 }
 
+TEST_F(RestOverSocket, HealIsAProcessWhoseModelIsFetched) {
+  start();
+  EXPECT_THAT(send(request("GET", "/processes/heal")).body, HasSubstr("max_hole_area_m2"));
+  const auto created = send(request("POST", "/processes/heal/execution", kBox));
+  ASSERT_EQ(created.status, 201);
+  const auto id = json::parse(created.body)["jobID"].get<std::string>();
+  service_.succeed(service_.start(), {{"cityjson", "model.city.json", "application/city+json",
+                                       R"({"type":"CityJSON"})"}});
+  const auto file = send(request("GET", "/jobs/" + id + "/results/cityjson"));
+  EXPECT_EQ(file.headers.at("content-type"), "application/city+json");
+  EXPECT_EQ(file.body, R"({"type":"CityJSON"})");
+  const auto refused =
+      send(request("POST", "/processes/heal/execution", R"({"inputs":{"parts":"merge"}})"));
+  EXPECT_EQ(refused.status, 501);
+  EXPECT_THAT(refused.body, HasSubstr("`parts`"));
+}
+
 TEST_F(RestOverSocket, ConnectionIsKeptAliveAndClosedWhenAskedTo) {
   start();
   Connection connection(port_);

@@ -114,6 +114,16 @@ TEST_F(RpcServerTest, ASubmittedJobCanBeAskedFor) {
   EXPECT_GT(job.created_ms(), 0);
 }
 
+TEST_F(RpcServerTest, HealIsTakenWithItsLimits) {
+  const auto [status, job] = submit("heal", R"({"max_hole_area_m2":25,"formats":["citygml3"]})");
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(job.process(), "heal");
+  EXPECT_EQ(submit("heal", R"({"parts":"merge"})").first.error_code(),
+            grpc::StatusCode::UNIMPLEMENTED);
+  EXPECT_EQ(submit("heal", R"({"max_hole_area_m2":-1})").first.error_code(),
+            grpc::StatusCode::INVALID_ARGUMENT);
+}
+
 TEST_F(RpcServerTest, ErrorsKeepTheirCodeAndMessage) {
   const auto unknown = submit("fly", "{}").first;
   EXPECT_EQ(unknown.error_code(), grpc::StatusCode::NOT_FOUND);

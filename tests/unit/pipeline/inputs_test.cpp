@@ -33,6 +33,39 @@ TEST(Inputs, DefaultsCompleteWhatIsNotGiven) {
     EXPECT_TRUE(json.contains(std::string(option.name))) << option.name;
 }
 
+TEST(Inputs, HealGivesACityModelBackUnlessAskedForMore) {
+  const auto canonical = canonical_inputs("heal", "");
+  ASSERT_TRUE(canonical) << canonical.error().message;
+  const auto json = nlohmann::json::parse(*canonical);
+  EXPECT_EQ(json["formats"], nlohmann::json::array({"cityjson"}));
+  for (const OptionSpec& option : find_process("heal")->inputs)
+    EXPECT_TRUE(json.contains(std::string(option.name))) << option.name;
+  EXPECT_FALSE(find_process("heal")->async_only);
+  for (const Format& format : formats()) {
+    const std::string key(format.key);
+    EXPECT_TRUE(canonical_inputs("heal", R"({"formats":[")" + key + "\"]}")) << key;
+  }
+}
+
+TEST(Inputs, TheLimitsOfHealingAreRead) {
+  for (const std::string_view process : {kExport, std::string_view("heal")}) {
+    const auto canonical = canonical_inputs(process, R"({"snap_tolerance_m":0.002,
+        "planarity_tolerance_m":0.02,"max_displacement_m":0.3,"max_hole_area_m2":25,
+        "parts":"keep","on_failure":"drop"})");
+    ASSERT_TRUE(canonical) << canonical.error().message;
+    const auto inputs = read_inputs(*canonical);
+    ASSERT_TRUE(inputs);
+    EXPECT_EQ(inputs->snap_tolerance_m, 0.002);
+    EXPECT_EQ(inputs->planarity_tolerance_m, 0.02);
+    EXPECT_EQ(inputs->max_displacement_m, 0.3);
+    EXPECT_EQ(inputs->max_hole_area_m2, 25);
+    EXPECT_FALSE(inputs->merge_parts);
+    EXPECT_FALSE(inputs->block_on_failure);
+  }
+  EXPECT_THAT(refused(R"({"max_hole_area_m2":-1})").message, HasSubstr("0 to 1000000"));
+  EXPECT_THAT(refused(R"({"parts":"split"})").message, HasSubstr("keep, merge"));
+}
+
 TEST(Inputs, CanonicalFormIsAFixedPoint) {
   const auto once =
       canonical_inputs(kExport, R"({"formats":"stl","bbox":{"bbox":[13.3,52.5,13.4,52.6]}})");
@@ -123,6 +156,7 @@ TEST(Inputs, AnUnknownProcessIsNotFoundAndTheOthersAreNamed) {
 
 TEST(Inputs, WhatIsNotBuiltIsSaidSo) {
   EXPECT_EQ(refused(R"({"unite_neighbours":true})").code, ErrorCode::Unimplemented);
+  EXPECT_EQ(refused(R"({"parts":"merge"})").code, ErrorCode::Unimplemented);
 }
 
 }  // namespace

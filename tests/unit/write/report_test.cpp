@@ -80,9 +80,9 @@ std::unique_ptr<Written> write_report(const std::string& hostile = "DE 1") {
   merged.outcome = "merged";
   merged.reason = "";
   merged.merged_into = hostile;
-  EXPECT_TRUE(writer.value()->add(delivered(hostile), &house));
-  EXPECT_TRUE(writer.value()->add(merged, nullptr));
-  EXPECT_TRUE(writer.value()->add(dropped("dropped " + hostile), nullptr));
+  EXPECT_TRUE(writer.value()->add(delivered(hostile), &house, {}));
+  EXPECT_TRUE(writer.value()->add(merged, nullptr, {}));
+  EXPECT_TRUE(writer.value()->add(dropped("dropped " + hostile), nullptr, {}));
   EXPECT_TRUE(writer.value()->finish(run_report()));
   written->json = test::read_file(written->folder.path() / "report.json");
   written->html = test::read_file(written->folder.path() / "report.html");
@@ -172,7 +172,7 @@ TEST(ReportHtml, LeavesRowsBeyondItsLimitToReportJson) {
   test::TemporaryFolder folder;
   auto writer = ReportWriter::create(folder.path(), {});
   for (std::uint64_t i = 0; i < kMaxHtmlRows + 7; ++i)
-    ASSERT_TRUE(writer.value()->add(dropped("id_" + std::to_string(i)), nullptr));
+    ASSERT_TRUE(writer.value()->add(dropped("id_" + std::to_string(i)), nullptr, {}));
   ASSERT_TRUE(writer.value()->finish(run_report()));
   const std::string html = test::read_file(folder.path() / "report.html");
   EXPECT_THAT(html, HasSubstr("id_4999<"));

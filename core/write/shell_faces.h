@@ -1,0 +1,17 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/citymodel/shell.h"
+#include "core/write/drawing.h"
+
+namespace citymesh {
+
+/// Faces of a boundary that may be open or turned inside out: all of them, each towards the viewer.
+/// `styles` has one per face; `back` is that of faces seen from their back, or style::kOther to
+/// keep the face's own.
+std::vector<DrawnFace> drawn_faces(std::span<const GridPoint> points, std::span<const Face> faces,
+                                   std::span<const std::uint8_t> styles, std::uint8_t back);
+
+}  // namespace citymesh
