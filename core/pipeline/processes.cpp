@@ -98,7 +98,9 @@ constexpr std::array kValidateInputs{kBbox,      kBboxRule, kObjectIds, kCrs,   
 
 constexpr OutputSpec kReportOutput{"report", "application/json",
                                    "What became of every building, defects and repairs included"};
-constexpr std::array kValidateOutputs{kReportOutput};
+constexpr OutputSpec kErrorsOutput{"errors_glb", "model/gltf-binary",
+                                   "The buildings as they came, places of defects coloured"};
+constexpr std::array kValidateOutputs{kReportOutput, kErrorsOutput};
 
 /// What depends on the formats that are built: core/write has the one table of them.
 struct Table {
@@ -107,6 +109,8 @@ struct Table {
       keys.push_back(format.key);
       model_outputs.push_back({format.key, format.media_type, format.title});
     }
+    heal_outputs = model_outputs;
+    heal_outputs.push_back(kErrorsOutput);
     const auto format = [this](std::string_view default_json) {
       return OptionSpec{"formats", OptionKind::TextList, default_json, "Formats to write.", keys};
     };
@@ -128,7 +132,7 @@ struct Table {
         ProcessSpec{"heal", "Heal",
                     "Repairs buildings and gives the city model back, with ids, attributes, "
                     "addresses and surface types, and a report of every change.",
-                    false, heal_inputs, model_outputs},
+                    false, heal_inputs, heal_outputs},
         ProcessSpec{"validate", "Validate", "Finds the defects of buildings and changes nothing.",
                     false, kValidateInputs, kValidateOutputs}};
   }
@@ -137,7 +141,7 @@ struct Table {
 
   std::vector<std::string_view> keys{};
   std::vector<OptionSpec> heal_inputs{}, export_inputs{};
-  std::vector<OutputSpec> model_outputs{kReportOutput};
+  std::vector<OutputSpec> model_outputs{kReportOutput}, heal_outputs{};
   std::vector<ProcessSpec> processes{};
 };
 

@@ -29,6 +29,7 @@ class Run {
       const RunContext& context)
       : process_(process),
         exporting_(process != "validate"),
+        shows_errors_(process == "validate" || process == "heal"),
         source_(source),
         folder_(folder),
         context_(context) {}
@@ -124,7 +125,7 @@ class Run {
         processed[i] = process_building(batch[i], inputs_, formats_, context_);
       else
         processed[i].report = validate_building(batch[i], inputs_);
-      if (processed[i].report.rung != "as_is")
+      if (shows_errors_ || processed[i].report.rung != "as_is")
         processed[i].sources = source_bodies(batch[i], inputs_, processed[i].report);
     });
     if (context_.stopped()) return cancelled();
@@ -219,6 +220,7 @@ class Run {
     outcome.files.push_back({"report", "report.json", "application/json"});
     outcome.files.push_back({"report.html", "report.html", "text/html"});
     outcome.files.push_back({"picture.svg", "picture.svg", "image/svg+xml"});
+    if (shows_errors_) outcome.files.push_back({"errors_glb", "errors.glb", "model/gltf-binary"});
     outcome.files.push_back({"run.json", "run.json", "application/json"});
     return outcome;
   }
@@ -226,7 +228,8 @@ class Run {
   void time(const std::string& stage, double since) { stages_s_[stage] += context_.now() - since; }
 
   std::string process_;
-  bool exporting_;  ///< writes bodies; `validate` only looks
+  bool exporting_;     ///< writes bodies; `validate` only looks
+  bool shows_errors_;  ///< writes errors.glb
   CitySource& source_;
   const std::filesystem::path& folder_;
   const RunContext& context_;

@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "core/write/errors_glb.h"
 #include "core/write/gallery.h"
 #include "core/write/output.h"
 #include "core/write/picture.h"
@@ -13,10 +14,12 @@ namespace {
 /// Buildings grow in two nameless files; the totals, known last, stand before them in the results.
 class FileReportWriter final : public ReportWriter {
  public:
-  FileReportWriter(std::filesystem::path folder, Spool lines, Spool rows, bool only_checked)
+  FileReportWriter(std::filesystem::path folder, Spool lines, Spool rows,
+                   std::unique_ptr<ErrorsGlb> errors, bool only_checked)
       : folder_(std::move(folder)),
         lines_(std::move(lines)),
         rows_(std::move(rows)),
+        errors_(std::move(errors)),
         only_checked_(only_checked) {}
 
   Result<void> add(const BuildingReport& report, const BuildingBodies* bodies,
@@ -31,6 +34,8 @@ class FileReportWriter final : public ReportWriter {
       if (auto written = rows_.write(buffer_); !written) return written;
     }
     findings_.add(report);
+    if (errors_)
+      if (auto written = errors_->add(report, sources); !written) return written;
     if (only_checked_) {
       picture_.add(report, sources);
     } else {
@@ -41,6 +46,8 @@ class FileReportWriter final : public ReportWriter {
   }
 
   Result<void> finish(const RunReport& report) override {
+    if (errors_)
+      if (auto r = errors_->finish(); !r) return r;
     const std::string svg = picture_.svg(report);
     if (auto r = write_file("picture.svg", svg, nullptr, ""); !r) return r;
 
@@ -72,6 +79,7 @@ class FileReportWriter final : public ReportWriter {
   std::filesystem::path folder_;
   Spool lines_;
   Spool rows_;
+  std::unique_ptr<ErrorsGlb> errors_;  // nullptr: not wanted
   bool only_checked_;
   ReportFindings findings_{};
   Picture picture_{};
@@ -87,8 +95,14 @@ Result<std::unique_ptr<ReportWriter>> ReportWriter::create(const std::filesystem
   if (!lines) return lines.error();
   auto rows = Spool::create(folder, "report.html (buildings)");
   if (!rows) return rows.error();
+  std::unique_ptr<ErrorsGlb> errors;
+  if (scene.process == "validate" || scene.process == "heal") {
+    auto file = ErrorsGlb::create(folder, scene);
+    if (!file) return file.error();
+    errors = std::move(*file);
+  }
   return std::unique_ptr<ReportWriter>(std::make_unique<FileReportWriter>(
-      folder, std::move(*lines), std::move(*rows), scene.process == "validate"));
+      folder, std::move(*lines), std::move(*rows), std::move(errors), scene.process == "validate"));
 }
 
 }  // namespace citymesh

@@ -205,6 +205,8 @@ void append_asked(std::string& html, const RunReport& report,
       }
   file("report.json", "all of this for programs");
   file("picture.svg", "the picture");
+  if (report.process == "validate" || report.process == "heal")
+    file("errors.glb", "the buildings as they came, defects coloured");
   file("run.json", "timings");
   html += "</ul><p class=\"meta\">Coordinates in the files are metres from the origin, axes " +
           std::string(kAxes) + ". Add the origin for coordinates in " +

@@ -52,21 +52,6 @@ void append_place(Members& members, const std::optional<Point3>& at) {
   if (at) append_point(members.key("at"), *at);
 }
 
-void append_issues(std::string& json, const std::vector<Issue>& issues) {
-  json += '[';
-  for (std::size_t i = 0; i < issues.size(); ++i) {
-    json += i == 0 ? "{" : ", {";
-    Members members(json, ", ");
-    members.text("code", issue_code_text(issues[i].code));
-    members.text("name", bare_issue_name(issues[i].code));
-    members.text("where", issues[i].where);
-    members.number("measured", issues[i].measured);
-    append_place(members, issues[i].at);
-    json += '}';
-  }
-  json += ']';
-}
-
 void append_part_members(Members& members, const PartReport& part) {
   members.text("gml_id", part.gml_id);
   members.optional("name", part.name);
@@ -130,6 +115,21 @@ constexpr std::string_view kNextLine = ",\n  ";
 std::string_view bare_issue_name(int code) {
   const std::string_view name = issue_name(code);
   return name.substr(name.find(' ') + 1);  // the table gives "302 SHELL_NOT_CLOSED"
+}
+
+void append_issues(std::string& json, std::span<const Issue> issues) {
+  json += '[';
+  for (std::size_t i = 0; i < issues.size(); ++i) {
+    json += i == 0 ? "{" : ", {";
+    Members members(json, ", ");
+    members.text("code", issue_code_text(issues[i].code));
+    members.text("name", bare_issue_name(issues[i].code));
+    members.text("where", issues[i].where);
+    members.number("measured", issues[i].measured);
+    append_place(members, issues[i].at);
+    json += '}';
+  }
+  json += ']';
 }
 
 void append_report_head(std::string& json, const RunReport& report) {

@@ -19,8 +19,61 @@ class SectionSink {
   virtual Result<void> section(std::size_t number) = 0;
 };
 
-/// The writer of a format whose file has sections that all grow with every building. They wait in
-/// spools and are joined at the end, when counts and sizes are known. `Content` has
+/// A file of sections that all grow with every building. They wait in spools and are joined at the
+/// end, when counts and sizes are known.
+template <std::size_t Sections>
+class SectionedFile {
+ public:
+  using Texts = std::array<std::string, Sections>;
+  using Sizes = std::array<std::uint64_t, Sections>;
+
+  static Result<SectionedFile> create(const std::filesystem::path& folder,
+                                      std::string_view file_name) {
+    auto file = AtomicFile::create(folder / file_name);
+    if (!file) return file.error();
+    std::vector<Spool> spools;
+    for (std::size_t i = 0; i < Sections; ++i) {
+      auto spool = Spool::create(
+          folder, std::string(file_name) + " (section " + std::to_string(i + 1) + ")");
+      if (!spool) return spool.error();
+      spools.push_back(std::move(*spool));
+    }
+    return SectionedFile(std::move(*file), std::move(spools));
+  }
+
+  Result<void> write(const Texts& texts) {
+    for (std::size_t i = 0; i < Sections; ++i)
+      if (auto written = spools_[i].write(texts[i]); !written) return written;
+    return {};
+  }
+
+  /// `content.join(sizes, sink)` puts the sections together.
+  template <class Content>
+  Result<void> finish(const Content& content) {
+    Sizes sizes{};
+    for (std::size_t i = 0; i < Sections; ++i) sizes[i] = spools_[i].size();
+    ToFile sink(file_, spools_);
+    if (auto joined = content.join(sizes, sink); !joined) return joined;
+    return file_.commit();
+  }
+
+ private:
+  struct ToFile final : SectionSink {
+    ToFile(AtomicFile& to, std::vector<Spool>& from) : file(to), spools(from) {}
+    Result<void> text(std::string_view bytes) override { return file.write(bytes); }
+    Result<void> section(std::size_t number) override { return file.append(spools[number]); }
+    AtomicFile& file;
+    std::vector<Spool>& spools;
+  };
+
+  SectionedFile(AtomicFile file, std::vector<Spool> spools)
+      : file_(std::move(file)), spools_(std::move(spools)) {}
+
+  AtomicFile file_;
+  std::vector<Spool> spools_;
+};
+
+/// The writer of a format whose file has sections. `Content` has
 ///   kSections                                  how many there are
 ///   Content(const Scene&)
 ///   Result<void> append(building, sections)    adds a building's bytes to the sections
@@ -30,81 +83,51 @@ class SectionedWriter final : public BodyWriter {
  public:
   static WriterResult open(const std::filesystem::path& folder, const Format& format,
                            const Scene& scene) {
-    auto file = AtomicFile::create(folder / format.file_name);
+    auto file = File::create(folder, format.file_name);
     if (!file) return file.error();
-    std::vector<Spool> spools;
-    for (std::size_t i = 0; i < Content::kSections; ++i) {
-      auto spool = Spool::create(
-          folder, std::string(format.file_name) + " (section " + std::to_string(i + 1) + ")");
-      if (!spool) return spool.error();
-      spools.push_back(std::move(*spool));
-    }
-    return WriterResult(
-        std::make_unique<SectionedWriter>(std::move(*file), std::move(spools), scene));
+    return WriterResult(std::make_unique<SectionedWriter>(std::move(*file), scene));
   }
 
-  SectionedWriter(AtomicFile file, std::vector<Spool> spools, const Scene& scene)
-      : file_(std::move(file)), spools_(std::move(spools)), scene_(scene), content_(scene) {}
+  SectionedWriter(SectionedFile<Content::kSections> file, const Scene& scene)
+      : file_(std::move(file)), scene_(scene), content_(scene) {}
 
   Result<std::string> encode(const BuildingBodies& building) const override {
     Content content(scene_);
-    Texts texts;
+    typename File::Texts texts;
     if (auto appended = content.append(building, texts); !appended) return appended.error();
+    typename File::Sizes sizes{};
+    for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = texts[i].size();
     ToText sink(texts);
-    if (auto joined = content.join(sizes_of(texts), sink); !joined) return joined.error();
+    if (auto joined = content.join(sizes, sink); !joined) return joined.error();
     return std::move(sink.whole);
   }
 
   Result<void> add(const BuildingBodies& building) override {
     for (std::string& text : texts_) text.clear();
     if (auto appended = content_.append(building, texts_); !appended) return appended;
-    for (std::size_t i = 0; i < texts_.size(); ++i)
-      if (auto written = spools_[i].write(texts_[i]); !written) return written;
-    return {};
+    return file_.write(texts_);
   }
 
-  Result<void> finish() override {
-    Sizes sizes{};
-    for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = spools_[i].size();
-    ToFile sink(file_, spools_);
-    if (auto joined = content_.join(sizes, sink); !joined) return joined;
-    return file_.commit();
-  }
+  Result<void> finish() override { return file_.finish(content_); }
 
  private:
-  using Texts = std::array<std::string, Content::kSections>;
-  using Sizes = std::array<std::uint64_t, Content::kSections>;
+  using File = SectionedFile<Content::kSections>;
 
   struct ToText final : SectionSink {
-    explicit ToText(const Texts& all) : texts(all) {}
+    explicit ToText(const typename File::Texts& all) : texts(all) {}
     Result<void> text(std::string_view bytes) override {
       whole += bytes;
       return {};
     }
     Result<void> section(std::size_t number) override { return text(texts[number]); }
-    const Texts& texts;
+    const typename File::Texts& texts;
     std::string whole{};
   };
 
-  struct ToFile final : SectionSink {
-    ToFile(AtomicFile& to, std::vector<Spool>& from) : file(to), spools(from) {}
-    Result<void> text(std::string_view bytes) override { return file.write(bytes); }
-    Result<void> section(std::size_t number) override { return file.append(spools[number]); }
-    AtomicFile& file;
-    std::vector<Spool>& spools;
-  };
-
-  static Sizes sizes_of(const Texts& texts) {
-    Sizes sizes{};
-    for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = texts[i].size();
-    return sizes;
-  }
-
-  AtomicFile file_;
-  std::vector<Spool> spools_;
+  File file_;
   Scene scene_;
   Content content_;
-  Texts texts_{};
+  typename File::Texts texts_{};
 };
 
 /// One line of JSON that says which body a number in a file stands for: `{"body":0,"name":…,

@@ -12,17 +12,16 @@ bool is_opening(SurfaceType type) {
   return type == SurfaceType::Window || type == SurfaceType::Door;
 }
 
-/// Triangles of a face; of one that crosses itself a fan, which is only seen where painting has to
-/// split it.
+}  // namespace
+
 std::vector<Triangle> pieces(std::span<const GridPoint> points, const Face& face) {
   if (auto triangles = triangulate(points, face.rings)) return std::move(*triangles);
   std::vector<Triangle> fan;
+  if (face.rings.empty()) return fan;
   const Ring& ring = face.rings[0];
   for (std::size_t i = 1; i + 1 < ring.size(); ++i) fan.push_back({ring[0], ring[i], ring[i + 1]});
   return fan;
 }
-
-}  // namespace
 
 std::vector<DrawnFace> drawn_faces(std::span<const GridPoint> points, std::span<const Face> faces,
                                    std::span<const std::uint8_t> styles, std::uint8_t back) {

@@ -14,4 +14,7 @@ namespace citymesh {
 std::vector<DrawnFace> drawn_faces(std::span<const GridPoint> points, std::span<const Face> faces,
                                    std::span<const std::uint8_t> styles, std::uint8_t back);
 
+/// Triangles of a face; of one that crosses itself a fan of its corners.
+std::vector<Triangle> pieces(std::span<const GridPoint> points, const Face& face);
+
 }  // namespace citymesh

@@ -73,9 +73,10 @@ struct SourceBody {
   std::vector<Issue> issues{};
 };
 
-/// report.json, report.html, picture.svg: fed building by building, completed by the totals. Memory
-/// is bounded: the page has the first 5,000 buildings and before/after pictures of those that
-/// changed most, the picture draws large cities as blocks.
+/// report.json, report.html, picture.svg: fed building by building, completed by the totals;
+/// errors.glb as well for `validate` and `heal`. Memory is bounded: the page has the first 5,000
+/// buildings and before/after pictures of those that changed most, the picture draws large cities
+/// as blocks.
 class ReportWriter {
  public:
   static Result<std::unique_ptr<ReportWriter>> create(const std::filesystem::path& folder,

@@ -34,7 +34,8 @@ Result<fs::path> make_staged(const fs::path& folder) {
 
 /// Every name that a run may write.
 std::set<std::string> result_names() {
-  std::set<std::string> names{"report.json", "report.html", "picture.svg", "run.json"};
+  std::set<std::string> names{"report.json", "report.html", "picture.svg", "errors.glb",
+                              "run.json"};
   for (const auto& format : formats()) {
     names.emplace(format.file_name);
     if (!format.sidecar.empty()) names.emplace(format.sidecar);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/pipeline/pipeline.h"
+#include "core/write/write.h"
 
 namespace citymesh {
 namespace {
@@ -16,7 +17,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 
-constexpr std::string_view kReport = "report";
 constexpr const char* kFormats = "formats";
 
 template <class Specs>
@@ -51,7 +51,7 @@ std::string with_requested_formats(const ProcessSpec& process, const JobSpec& sp
   auto formats = inputs.contains(kFormats) ? inputs[kFormats] : json::array();
   if (formats.is_string()) formats = json::array({formats});  // one text is a list of one
   for (const auto& [output, transmission] : spec.outputs)
-    if (output != kReport && std::ranges::find(formats, json(output)) == formats.end())
+    if (find_format(output) != nullptr && std::ranges::find(formats, json(output)) == formats.end())
       formats.push_back(output);
   if (formats.empty()) return spec.inputs_json;
   inputs[kFormats] = std::move(formats);

@@ -170,7 +170,7 @@ inline BuildingBodies rich_building() {
   b.face(SurfaceType::WallSurface, "GML_south", {a0, a1, e1, e0}).rings.push_back({w0, w3, w2, w1});
   b.face(SurfaceType::Window, "GML_window", {w0, w1, w2, w3});
   b.face(SurfaceType::WallSurface, "GML_east", {a1, a2, e2, e1});
-  b.face(SurfaceType::WallSurface, "", {a2, a3, e3, e2});
+  b.face(SurfaceType::WallSurface, "", {a2, a3, e3, e2}).made_by = "healed";
   b.face(SurfaceType::WallSurface, "", {a3, a0, e0, e3});
   b.face(SurfaceType::RoofSurface, "{roof 1}", {e0, e1, e2, e3});
 
