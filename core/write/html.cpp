@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/write/styles.h"
+#include "core/write/drawing.h"
 #include "core/write/text.h"
 
 namespace citymesh {
@@ -47,16 +47,16 @@ std::string css_colour(std::string_view rung) {
          ')';
 }
 
+std::string chip(std::string_view label, const Style& style) {
+  std::string html = "<span class=\"rung\" style=\"background:";
+  append_colour(html, style.colour);
+  return html + "\" title=\"" + escaped(style.meaning) + "\">" + escaped(label) + "</span>";
+}
+
 std::string rung_chip(std::string_view rung, std::string_view outcome) {
-  const bool delivered = outcome == "delivered";
-  std::string html = "<span class=\"rung";
-  if (delivered) {
-    html += "\" style=\"background:" + css_colour(rung);
-  } else {
-    html += outcome == "merged" ? " merged" : " dropped";
-  }
-  html += "\" title=\"" + escaped(kStyles[rung_style(rung)].meaning) + "\">";
-  return html + escaped(delivered && !rung.empty() ? rung : outcome) + "</span>";
+  if (outcome == "delivered") return chip(rung.empty() ? outcome : rung, kStyles[rung_style(rung)]);
+  return "<span class=\"rung " + std::string(outcome == "merged" ? "merged" : "dropped") + "\">" +
+         escaped(outcome) + "</span>";
 }
 
 }  // namespace citymesh

@@ -30,7 +30,7 @@ class FileReportWriter final : public ReportWriter {
     if (auto written = lines_.write(buffer_); !written) return written;
     if (findings_.buildings < kMaxHtmlRows) {
       buffer_.clear();
-      append_row(buffer_, report);
+      append_row(buffer_, report, only_checked_);
       if (auto written = rows_.write(buffer_); !written) return written;
     }
     findings_.add(report);

@@ -324,17 +324,24 @@ void append_page_head(std::string& html, const RunReport& report, const ReportFi
       "(m³)</button></th><th class=\"num\"><button>Triangles</button></th></tr></thead><tbody>\n";
 }
 
-void append_row(std::string& html, const BuildingReport& building) {
+void append_row(std::string& html, const BuildingReport& building, bool only_checked) {
   const auto groups = grouped_issues(building);
-  const bool delivered = building.outcome == "delivered";
-  const std::string& kind = delivered && !building.rung.empty() ? building.rung : building.outcome;
+  const bool delivered = building.outcome == "delivered", made = delivered && !only_checked;
+  std::string kind = delivered && !building.rung.empty() ? building.rung : building.outcome;
+  std::string shown = rung_chip(building.rung, building.outcome);
+  if (delivered && only_checked) {
+    std::uint8_t gravest = style::kSound;
+    for (const IssueGroup& group : groups) gravest = std::max(gravest, finding_style(group.code));
+    kind = groups.empty() ? "sound" : "defective";
+    shown = chip(kind, kStyles[gravest]);
+  }
   html += "<tr data-kind=\"" + escaped(kind) + "\" data-issues=\"" + std::to_string(groups.size()) +
           "\"><td><span class=\"id\">" + escaped(building.gml_id) + "</span>";
   if (!building.name.empty() && building.name != building.gml_id)
     html += "<small>" + escaped(building.name) + "</small>";
   if (!building.parts.empty())
     html += "<small>" + plural(building.parts.size(), "part", "parts") + "</small>";
-  html += "</td><td>" + rung_chip(building.rung, building.outcome);
+  html += "</td><td>" + shown;
   if (!building.reason.empty())
     html += "<small class=\"bad\">" + escaped(building.reason) + "</small>";
   if (!building.merged_into.empty())
@@ -356,9 +363,9 @@ void append_row(std::string& html, const BuildingReport& building) {
   }
   html += "</td>";
   append_value_cell(html, building.max_displacement_m,
-                    delivered ? rounded(building.max_displacement_m, 4) : std::string());
+                    made ? rounded(building.max_displacement_m, 4) : std::string());
   append_value_cell(html, building.volume_after_m3,
-                    delivered ? rounded(building.volume_after_m3, 1) : std::string());
+                    made ? rounded(building.volume_after_m3, 1) : std::string());
   append_value_cell(html, static_cast<double>(building.triangles),
                     delivered ? grouped(building.triangles) : std::string());
   html += "</tr>\n";

@@ -25,7 +25,7 @@ inline constexpr std::uint64_t kMaxHtmlRows = 5000;
 // are escaped; nothing is loaded from elsewhere.
 void append_page_head(std::string& html, const RunReport& report, const ReportFindings& findings,
                       std::string_view picture_svg, std::string_view gallery);
-void append_row(std::string& html, const BuildingReport& building);
+void append_row(std::string& html, const BuildingReport& building, bool only_checked);
 void append_page_tail(std::string& html);
 
 }  // namespace citymesh

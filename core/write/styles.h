@@ -27,12 +27,12 @@ inline constexpr std::array kStyles{
     Style{"", "", {176, 180, 184}},
     Style{"sound", "without defects", {216, 212, 202}},
     Style{"inside", "seen from its back", {150, 158, 172}},
-    Style{"source", "found in the source", {98, 140, 190}},
+    Style{"source", "found while reading, and own codes", {158, 128, 92}},
     Style{"ring", "defects of rings, 1xx", {238, 196, 84}},
     Style{"polygon", "defects of polygons, 2xx", {236, 142, 62}},
     Style{"shell", "defects of shells, 3xx", {208, 72, 60}},
     Style{"solid", "defects of solids and buildings, 4xx to 6xx", {166, 80, 158}},
-    Style{"new", "no source has this face", {86, 140, 222}},
+    Style{"new", "no source has this face", {112, 184, 62}},
 };
 
 namespace style {

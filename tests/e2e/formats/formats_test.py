@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Runs the shell examples of docs/formats.md as they stand; only the place of the program is replaced.
+"""Runs the shell examples of docs/formats.md and docs/processes/heal.md as they stand; only the place of the program is
+replaced.
 
     formats_test.py CITYMESH
 """
@@ -14,6 +15,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
 PAGE = ROOT / "docs/formats.md"
+HEAL = ROOT / "docs/processes/heal.md"
 PROGRAM = None
 BLOCK = re.compile(r"```sh\n(.*?)```", re.DOTALL)
 SECTION = re.compile(r"^### (.+?)$(.*?)(?=^##|\Z)", re.DOTALL | re.MULTILINE)
@@ -44,6 +46,19 @@ class Formats(unittest.TestCase):
                     report = json.loads((self.folder / output / "report.json").read_text(encoding="utf-8"))
                     self.assertGreater(report["counts"]["delivered"], 0, output)
                     self.assertEqual(report["counts"]["dropped"], 0, output)
+
+    def test_examples_of_heal_give_a_city_model_back(self):
+        blocks = [block for block in BLOCK.findall(HEAL.read_text(encoding="utf-8")) if "curl" not in block]
+        self.assertTrue(blocks)
+        for block in blocks:
+            done = subprocess.run(["bash", "-euc", block.replace("citymesh heal", f"{PROGRAM} heal")], cwd=self.folder,
+                                  capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            for output in re.findall(r"--output (\S+)", block):
+                model = json.loads((self.folder / output / "model.city.json").read_text(encoding="utf-8"))
+                report = json.loads((self.folder / output / "report.json").read_text(encoding="utf-8"))
+                self.assertGreater(report["counts"]["delivered"], 0)
+                self.assertGreaterEqual(len(model["CityObjects"]), report["counts"]["delivered"])
 
 
 if __name__ == "__main__":

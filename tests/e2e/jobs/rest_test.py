@@ -76,7 +76,7 @@ class JobCycle(ServiceTest):
         job = created.headers["Location"]
         self.assertEqual(self.service.wait(job)["status"], "successful")
         results = self.service.get(job + "/results").json()
-        self.assertEqual(set(results), {"report", "cityjson"})
+        self.assertEqual(set(results), {"report", "cityjson", "errors_glb"})
         report, model = (self.service.get(results[name]["href"]).json() for name in ("report", "cityjson"))
         self.assertEqual(report["process"], "heal")
         delivered = {building["gml_id"] for building in report["buildings"] if building["outcome"] == "delivered"}
