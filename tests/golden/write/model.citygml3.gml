@@ -108,6 +108,12 @@
 </boundary>
 <boundary>
 <con:WallSurface gml:id="cm.b_1_house_one.b4">
+<genericAttribute>
+<gen:StringAttribute>
+<gen:name>citymesh_rung</gen:name>
+<gen:value>healed</gen:value>
+</gen:StringAttribute>
+</genericAttribute>
 <lod3MultiSurface>
 <gml:MultiSurface gml:id="cm.b_1_house_one.m4">
 <gml:surfaceMember>

@@ -193,6 +193,9 @@
 </bldg:boundedBy>
 <bldg:boundedBy>
 <bldg:WallSurface gml:id="cm.b_1_house_one.b4">
+<gen:stringAttribute name="citymesh_rung">
+<gen:value>healed</gen:value>
+</gen:stringAttribute>
 <bldg:lod3MultiSurface>
 <gml:MultiSurface gml:id="cm.b_1_house_one.m4">
 <gml:surfaceMember>

@@ -27,7 +27,7 @@ class ErrorsGlb : public ::testing::Test {
     ASSERT_TRUE(writer);
     const auto house = test::house(8, 6, 3, 5);
     SourceBody bad{"bad", "b_bad", {house.points, house.faces, house.surface_ids}, {}};
-    bad.issues = {{203, "roof_south", 0.2, Point3{4, 1.5, 4}}, {302, "", 4, Point3{8, 3, 5}}};
+    bad.issues = {{203, "roof_south", 0.2, Point3{4, 1.5, 4}}, {302, "", 4, Point3{8, 3, 1}}};
     const auto box = test::box(4, 3, 2, {20, 0, 0});
     SourceBody good{"good", "b_good", {box.points, box.faces, box.surface_ids}, {}};
     BuildingReport report;
