@@ -29,7 +29,7 @@ if(CITYMESH_TESTS)
   find_package(GTest CONFIG REQUIRED)
 endif()
 
-# Last: CGAL alters the module path. Constrained triangulation, behind core/geometry/triangulation.h; the checker of the
-# tests shares no code with core/gates.
+# Last: CGAL alters the module path. Constrained triangulation, behind core/geometry/triangulation.h; alpha wrap and edge
+# collapse, behind core/reconstruct/alpha_wrap.h (neither needs Eigen); the checker of the tests shares no code with core/gates.
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL CONFIG REQUIRED)

@@ -14,6 +14,7 @@
 #include "core/reconstruct/lane.h"
 #include "core/reconstruct/rebuild_2_5d.h"
 #include "core/reconstruct/rebuild_3d.h"
+#include "core/reconstruct/wrap.h"
 #include "core/validate/validate.h"
 
 namespace citymesh {
@@ -141,6 +142,7 @@ struct Rebuild {
 constexpr std::array kRebuilds{
     Rebuild{"rebuilt_2_5d", rebuild_2_5d, false},
     Rebuild{"rebuilt_3d", rebuild_3d, true},
+    Rebuild{"wrapped", wrap, false},
 };
 
 class Ladder {

@@ -8,6 +8,7 @@
 #include "core/geometry/box_tree.h"
 #include "core/geometry/measure.h"
 #include "core/geometry/triangulation.h"
+#include "core/reconstruct/sheets.h"
 
 namespace citymesh {
 namespace {
@@ -23,15 +24,6 @@ constexpr double kCrumbShare = 0.01;  ///< of all area; the larger of the two co
 std::vector<Triangle> triangles_of(const Shell& shell, const Face& face) {
   auto triangles = triangulate(shell.points, face.rings);
   return triangles ? std::move(*triangles) : std::vector<Triangle>{};
-}
-
-/// Triangles of a face; of rings that cross, a fan.
-std::vector<Triangle> sheet_of(const Shell& shell, const Face& face) {
-  if (auto triangles = triangulate(shell.points, face.rings)) return std::move(*triangles);
-  std::vector<Triangle> fan;
-  const Ring& ring = face.rings[0];
-  for (std::size_t i = 1; i + 1 < ring.size(); ++i) fan.push_back({ring[0], ring[i], ring[i + 1]});
-  return fan;
 }
 
 /// Whether lines seen from above enclose an area worth its name.

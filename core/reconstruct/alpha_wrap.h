@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/geometry/point.h"
+
+namespace citymesh {
+
+struct WrapMesh {
+  std::vector<Point3> points{};
+  std::vector<Triangle> triangles{};
+};
+
+/// The closed surface around all triangles that no ball of radius `alpha_m` from outside gets
+/// through, `offset_m` away from them (Portaneri, Rouxel-Labbé, Hemmer, Cohen-Steiner, Alliez
+/// 2022); then flat regions are thinned out (Lindstrom, Turk 1998). Takes time with (size / alpha)²
+/// and cannot be stopped: bound both before. None where the library gives up.
+std::optional<WrapMesh> alpha_wrap(std::span<const Point3> points,
+                                   std::span<const Triangle> triangles, double alpha_m,
+                                   double offset_m);
+
+}  // namespace citymesh
