@@ -80,6 +80,7 @@ struct Geometry {
   bool assembled = false;  ///< collected by the reader from boundary surfaces; the source states no
                            ///< such geometry
   bool footprint = false;  ///< LoD0 footprint or roof edge: an area, not a shell
+  bool closed_rings = false;  ///< the encoding repeats the first corner of a ring at its end
   std::vector<Point3> points{};
   std::vector<Polygon> polygons{};
   std::vector<Solid> solids{};  ///< empty for surfaces

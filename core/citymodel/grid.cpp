@@ -10,6 +10,14 @@
 
 namespace citymesh {
 
+std::optional<GridPoint> to_grid(const Point3& p) {
+  constexpr double kLimit_m = static_cast<double>(kGridLimit) * kGridStep_m;
+  if (!(std::abs(p.x) < kLimit_m && std::abs(p.y) < kLimit_m && std::abs(p.z) < kLimit_m))
+    return {};
+  return GridPoint{std::llround(p.x * kGridStepsPerMetre), std::llround(p.y * kGridStepsPerMetre),
+                   std::llround(p.z * kGridStepsPerMetre)};
+}
+
 std::variant<Gridded, Issue> grid(const Building& building, const Geometry& geometry) {
   Gridded result;
   Shell& shell = result.shell;
@@ -18,18 +26,15 @@ std::variant<Gridded, Issue> grid(const Building& building, const Geometry& geom
   std::map<GridPoint, std::uint32_t> known;
   for (std::size_t i = 0; i < geometry.points.size(); ++i) {
     const Point3& p = geometry.points[i];
-    constexpr double kLimit_m = static_cast<double>(kGridLimit) * kGridStep_m;
-    if (!(std::abs(p.x) < kLimit_m && std::abs(p.y) < kLimit_m && std::abs(p.z) < kLimit_m))
+    const std::optional<GridPoint> g = to_grid(p);
+    if (!g)
       return Issue{issue_code::kCoordinateOutOfRange, fmt::format("({} {} {})", p.x, p.y, p.z),
                    p.x};
-    const GridPoint g{std::llround(p.x * kGridStepsPerMetre),
-                      std::llround(p.y * kGridStepsPerMetre),
-                      std::llround(p.z * kGridStepsPerMetre)};
-    const Point3 back = to_metres(g);
+    const Point3 back = to_metres(*g);
     result.max_displacement_m =
         std::max(result.max_displacement_m, std::hypot(back.x - p.x, back.y - p.y, back.z - p.z));
-    const auto [at, added] = known.emplace(g, static_cast<std::uint32_t>(shell.points.size()));
-    if (added) shell.points.push_back(g);
+    const auto [at, added] = known.emplace(*g, static_cast<std::uint32_t>(shell.points.size()));
+    if (added) shell.points.push_back(*g);
     index_of[i] = at->second;
   }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <variant>
 
 #include "core/citymodel/building.h"
@@ -7,6 +8,9 @@
 #include "core/citymodel/shell.h"
 
 namespace citymesh {
+
+/// The nearest point of the grid; none beyond its limits, and for what is no number.
+std::optional<GridPoint> to_grid(const Point3& p);
 
 /// A geometry on the grid, equal points as one, rings without the repeated last corner; otherwise
 /// as it came. A face knows whether it is an opening through its type. Errors are issues: 901

@@ -61,6 +61,10 @@ constexpr std::array kIssueNames{
     IssueName{issue_code::kTJunction, "C113 T_JUNCTION"},
     IssueName{issue_code::kDuplicateFace, "C114 DUPLICATE_FACE"},
     IssueName{issue_code::kEncodingLoss, "C115 ENCODING_LOSS"},
+    IssueName{issue_code::kBuildingsOverlap, "C116 BUILDINGS_OVERLAP"},
+    IssueName{issue_code::kNearDuplicateWall, "C117 NEAR_DUPLICATE_WALL"},
+    IssueName{issue_code::kNarrowGap, "C118 NARROW_GAP"},
+    IssueName{issue_code::kFootprintTurned, "C119 FOOTPRINT_TURNED"},
 };
 
 static_assert(std::is_sorted(kIssueNames.begin(), kIssueNames.end(),
@@ -80,6 +84,11 @@ std::string_view issue_name(int code) {
 
 std::string issue_code_text(int code) {
   return code > kOwnIssueBase ? "C" + std::to_string(code - kOwnIssueBase) : std::to_string(code);
+}
+
+bool is_defect(int code) {
+  return code != issue_code::kNearDuplicateWall && code != issue_code::kNarrowGap &&
+         code != issue_code::kFootprintTurned;
 }
 
 }  // namespace citymesh

@@ -14,6 +14,8 @@ struct Issue {
   std::string where{};         ///< gml_id of polygon or surface, ring number, coordinates
   double measured = 0.0;       ///< what the check measured, 0 where it measures nothing
   std::optional<Point3> at{};  ///< where it is best seen, metres from the local origin
+  bool assembled = false;  ///< of a shell that the source does not state as one: it was collected
+                           ///< from boundary surfaces
 };
 
 /// A change made to the geometry.
@@ -44,10 +46,20 @@ inline constexpr int kDegenerateTriangle = 10112;
 inline constexpr int kTJunction = 10113;
 inline constexpr int kDuplicateFace = 10114;
 inline constexpr int kEncodingLoss = 10115;
+// Between buildings.
+inline constexpr int kBuildingsOverlap = 10116;
+inline constexpr int kNearDuplicateWall = 10117;
+inline constexpr int kNarrowGap = 10118;
+// Of a building, but no defect of its geometry.
+inline constexpr int kFootprintTurned = 10119;
 }  // namespace issue_code
 
 /// "203 NON_PLANAR_POLYGON_DISTANCE_PLANE", "C101 DANGLING_XLINK"; the names of docs/issues.
 std::string_view issue_name(int code);
 std::string issue_code_text(int code);  ///< "203", "C101"
+
+/// Whether a building with it is defective; C117, C118 and C119 are worth knowing, but break no
+/// rule of ISO 19107.
+bool is_defect(int code);
 
 }  // namespace citymesh

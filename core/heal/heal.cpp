@@ -169,7 +169,9 @@ class Ladder {
       Gridded& input = std::get<Gridded>(gridded);
       if (!first) {
         first = input;
-        result_.issues = validate(input.shell, {options_.planarity_tolerance_m});
+        result_.issues = validate(building_, *geometry,
+                                  {options_.snap_tolerance_m, options_.planarity_tolerance_m})
+                             .issues;
         if (is_closed(input.shell))
           result_.volume_before_m3 = volume_m3(input.shell.points, triangles_of(input.shell));
       }

@@ -244,6 +244,7 @@ Result<Inputs> read_inputs(std::string_view canonical_json) {
   inputs.patches =
       given.value("patches", "by_object") == "by_type" ? Patches::ByType : Patches::ByObject;
   inputs.snap_tolerance_m = given.value("snap_tolerance_m", inputs.snap_tolerance_m);
+  inputs.gap_threshold_m = given.value("gap_threshold_m", inputs.gap_threshold_m);
   inputs.planarity_tolerance_m = given.value("planarity_tolerance_m", inputs.planarity_tolerance_m);
   inputs.max_displacement_m = given.value("max_displacement_m", inputs.max_displacement_m);
   inputs.max_hole_area_m2 = given.value("max_hole_area_m2", inputs.max_hole_area_m2);

@@ -23,6 +23,7 @@ struct Inputs {
   double planarity_tolerance_m = 0.01;
   double max_displacement_m = 0.1;
   double max_hole_area_m2 = 10000;
+  double gap_threshold_m = 0.1;
   bool merge_parts = false;  ///< parts that touch or overlap become one body
 };
 

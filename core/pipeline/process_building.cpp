@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/citymodel/choose.h"
-#include "core/citymodel/grid.h"
 #include "core/gates/gates.h"
 #include "core/geometry/measure.h"
 #include "core/heal/heal.h"
@@ -164,7 +163,8 @@ ProcessedPart process_part(const Building& building, const std::string& name, co
   }
   report.reason.clear();
   if (report.rung != "as_is" || !healed.issues.empty())
-    report.issues_after = validate(healed.shell, {inputs.planarity_tolerance_m});
+    report.issues_after =
+        validate(healed.shell, {inputs.snap_tolerance_m, inputs.planarity_tolerance_m});
   report.repairs = std::move(healed.repairs);
   report.max_displacement_m = healed.max_displacement_m;
   report.deviation_max_m = healed.deviation.max_m;
@@ -295,66 +295,6 @@ ProcessedBuilding process_building(const NamedBuilding& named, const Inputs& inp
   processed.bodies = BuildingBodies{building.gml_id, report.rung, building.attributes,
                                     building.addresses, std::move(bodies)};
   return processed;
-}
-
-BuildingReport validate_building(const NamedBuilding& named, const Inputs& inputs) {
-  const auto check = [&](const Building& building, const std::string& name) {
-    PartReport report;
-    report.gml_id = building.gml_id;
-    report.name = name;
-    report.kind = building.kind;
-    report.outcome = "delivered";
-    report.issues_before = building.source_issues;
-    const std::vector<const Geometry*> geometries = choose_geometries(building, inputs.lod);
-    if (geometries.empty()) {
-      report.outcome = "dropped";
-      report.reason = "no_geometry";
-      return report;
-    }
-    report.lod = to_string(geometries[0]->lod);
-    const auto gridded = grid(building, *geometries[0]);
-    if (const Issue* issue = std::get_if<Issue>(&gridded)) {
-      report.issues_before.push_back(*issue);
-      return report;
-    }
-    const Shell& shell = std::get<Gridded>(gridded).shell;
-    std::vector<Issue> issues = validate(shell, {inputs.planarity_tolerance_m});
-    if (geometries[0]->footprint)  // an area has no shell to check
-      std::erase_if(issues,
-                    [](const Issue& issue) { return issue.code >= 300 && issue.code < 400; });
-    else if (const Meshed meshed = mesh(shell);
-             const auto* triangles = std::get_if<TriangleMesh>(&meshed)) {
-      report.triangles = triangles->triangles.size();
-      for (const GateFailure& failure : check_shell(triangles->points, triangles->triangles, {}))
-        if (const Issue issue = issue_of(failure, "gridded"); std::none_of(
-                issues.begin(), issues.end(), [&](const Issue& i) { return i.code == issue.code; }))
-          issues.push_back(issue);
-    }
-    report.issues_before.insert(report.issues_before.end(), issues.begin(), issues.end());
-    return report;
-  };
-
-  const Building& building = named.building;
-  BuildingReport report;
-  if (takes_own_geometry(building, inputs.lod)) {
-    static_cast<PartReport&>(report) = check(building, named.name);
-    if (report.reason == "no_geometry" && !building.parts.empty()) {
-      report.outcome = "delivered";
-      report.reason.clear();
-    }
-  } else {
-    report.gml_id = building.gml_id;
-    report.name = named.name;
-    report.outcome = "delivered";
-    report.issues_before = building.source_issues;
-  }
-  for (std::size_t i = 0; i < building.parts.size(); ++i)
-    report.parts.push_back(check(building.parts[i], named.part_names[i]));
-  if (named.duplicate) {
-    report.outcome = "dropped";
-    report.reason = "duplicate_id";
-  }
-  return report;
 }
 
 }  // namespace citymesh

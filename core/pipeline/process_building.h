@@ -48,7 +48,4 @@ ProcessedBuilding process_building(const NamedBuilding& named, const Inputs& inp
                                    const std::vector<OpenFormat>& formats,
                                    const RunContext& context);
 
-/// Finds the defects of one building and changes nothing.
-BuildingReport validate_building(const NamedBuilding& named, const Inputs& inputs);
-
 }  // namespace citymesh

@@ -93,8 +93,16 @@ constexpr OptionSpec kHole{
     0,
     1'000'000};
 
-constexpr std::array kValidateInputs{kBbox,      kBboxRule, kObjectIds, kCrs,      kSourceCrs,
-                                     kAxisOrder, kLod,      kSnap,      kPlanarity};
+constexpr OptionSpec kGap{"gap_threshold_m",
+                          OptionKind::Number,
+                          "0.1",
+                          "Narrower gaps between buildings are reported; 0: none are.",
+                          {},
+                          0.0,
+                          10.0};
+
+constexpr std::array kValidateInputs{kBbox,      kBboxRule, kObjectIds, kCrs,       kSourceCrs,
+                                     kAxisOrder, kLod,      kSnap,      kPlanarity, kGap};
 
 constexpr OutputSpec kReportOutput{"report", "application/json",
                                    "What became of every building, defects and repairs included"};

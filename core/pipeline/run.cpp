@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <unordered_set>
 
 #include "core/base/parallel.h"
@@ -13,6 +14,7 @@
 #include "core/pipeline/process_building.h"
 #include "core/pipeline/source_bodies.h"
 #include "core/pipeline/totals.h"
+#include "core/pipeline/validate_building.h"
 #include "core/write/write.h"
 
 namespace citymesh {
@@ -40,6 +42,7 @@ class Run {
     if (!inputs) return inputs.error();
     inputs_ = std::move(*inputs);
     if (inputs_.keep_installations) totals_.keep_installations();
+    if (!exporting_) validation_.emplace(inputs_);
 
     auto selection = source_.select(inputs_.query, context_);
     if (!selection) return selection.error();
@@ -119,13 +122,17 @@ class Run {
   Result<void> process(const std::vector<NamedBuilding>& batch) {
     const double start = context_.now();
     std::vector<ProcessedBuilding> processed(batch.size());
-    parallel_for(batch.size(), context_.threads, [&](std::size_t i) {
-      if (context_.stopped()) return;
-      if (exporting_)
+    if (validation_) {
+      std::vector<BuildingReport> reports = validation_->validate(batch, context_);
+      for (std::size_t i = 0; i < batch.size(); ++i) processed[i].report = std::move(reports[i]);
+    } else {
+      parallel_for(batch.size(), context_.threads, [&](std::size_t i) {
+        if (context_.stopped()) return;
         processed[i] = process_building(batch[i], inputs_, formats_, context_);
-      else
-        processed[i].report = validate_building(batch[i], inputs_);
-      if (shows_errors_ || processed[i].report.rung != "as_is")
+      });
+    }
+    parallel_for(batch.size(), context_.threads, [&](std::size_t i) {
+      if (!context_.stopped() && (shows_errors_ || processed[i].report.rung != "as_is"))
         processed[i].sources = source_bodies(batch[i], inputs_, processed[i].report);
     });
     if (context_.stopped()) return cancelled();
@@ -155,9 +162,13 @@ class Run {
   }
 
   static bool has_defects(const BuildingReport& report) {
-    return !report.issues_before.empty() ||
+    const auto any = [](const std::vector<Issue>& issues) {
+      return std::any_of(issues.begin(), issues.end(),
+                         [](const Issue& issue) { return is_defect(issue.code); });
+    };
+    return any(report.issues_before) ||
            std::any_of(report.parts.begin(), report.parts.end(),
-                       [](const PartReport& part) { return !part.issues_before.empty(); });
+                       [&](const PartReport& part) { return any(part.issues_before); });
   }
 
   Result<void> finish_files() {
@@ -196,6 +207,9 @@ class Run {
       outcome.report.warnings.push_back(fmt::format("object `{}` is in none of the inputs", id));
     if (outcome.report.counts.requested == 0)
       outcome.report.warnings.push_back("no building was selected: the result is empty");
+    if (validation_ && !validation_->compared_all())
+      outcome.report.warnings.push_back(
+          "too many buildings to compare each with its neighbours: those at the end were not");
     outcome.invalid_buildings = invalid_;
     outcome.complete =
         outcome.report.counts.dropped == 0 && selection.missing_ids.empty() &&
@@ -235,6 +249,7 @@ class Run {
   const RunContext& context_;
   Inputs inputs_;
   std::vector<OpenFormat> formats_;
+  std::optional<Validation> validation_;  ///< instead of healing
   std::unique_ptr<ReportWriter> report_;
   std::optional<Names> names_;
   std::unordered_set<std::string> seen_;

@@ -96,7 +96,8 @@ Geometry BuildingMaker::make_geometry(const Feature& feature, const RawShape& sh
   Geometry geometry{.type = shape.type,
                     .lod = shape.lod,
                     .assembled = shape.assembled,
-                    .footprint = shape.footprint};
+                    .footprint = shape.footprint,
+                    .closed_rings = shape.closed_rings};
   geometry.polygons.reserve(shape.uses.size());
   std::vector<std::uint32_t> polygon_of_use(shape.uses.size(), kFree);
   for (std::size_t u = 0; u < shape.uses.size(); ++u) {

@@ -359,7 +359,7 @@ void GeometryTree::resolve(Feature& feature, const DocumentOptions& options, Doc
     if (root.object < 0 || root.surface >= 0) continue;
     RawObject& object = feature.objects[index(root.object)];
     walk.issues = &object.issues;
-    RawShape shape{.lod = root.lod, .footprint = root.footprint};
+    RawShape shape{.lod = root.lod, .footprint = root.footprint, .closed_rings = true};
     shape_of(root, walk, shape);
     if (!shape.uses.empty()) object.shapes.push_back(std::move(shape));
   }
@@ -368,6 +368,7 @@ void GeometryTree::resolve(Feature& feature, const DocumentOptions& options, Doc
     feature.objects[index(key.first)].shapes.push_back({.lod = key.second,
                                                         .assembled = true,
                                                         .footprint = key.second.major == 0,
+                                                        .closed_rings = true,
                                                         .uses = std::move(uses)});
   }
 

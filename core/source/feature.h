@@ -42,6 +42,7 @@ struct RawShape {
   Lod lod{};
   bool assembled = false;
   bool footprint = false;
+  bool closed_rings = false;  ///< as in Geometry
   std::vector<PolygonUse> uses{};
   std::vector<Solid> solids{};  ///< indices into `uses`
 };

@@ -162,7 +162,7 @@ void JsonShapes::add(GeometryType type, const dom::array& boundaries, const Read
   constexpr Lod kLod{2, -1};  // the formats state none
   corner_ = &corner;
   srs_ = srs;
-  RawShape shape{.type = type, .lod = kLod};
+  RawShape shape{.type = type, .lod = kLod, .closed_rings = closed_rings_};
   const std::size_t polygons_before = feature_.polygons.size();
   bool readable = true;
   if (type == GeometryType::Solid) {

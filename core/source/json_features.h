@@ -69,8 +69,9 @@ using ReadCorner =
 /// Appends geometries to the first object of a feature.
 class JsonShapes {
  public:
-  JsonShapes(Feature& feature, std::uint64_t max_points)
-      : feature_(feature), max_points_(max_points) {}
+  /// `closed_rings`: as in Geometry.
+  JsonShapes(Feature& feature, std::uint64_t max_points, bool closed_rings)
+      : feature_(feature), max_points_(max_points), closed_rings_(closed_rings) {}
 
   /// Lists of rings, nested as the type requires. `srs` is that of the coordinates.
   void add(GeometryType type, const simdjson::dom::array& boundaries, const ReadCorner& corner,
@@ -88,6 +89,7 @@ class JsonShapes {
 
   Feature& feature_;
   std::uint64_t max_points_;
+  bool closed_rings_;
   const ReadCorner* corner_ = nullptr;
   std::uint32_t srs_ = 0;
 };

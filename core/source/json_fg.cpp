@@ -139,7 +139,7 @@ Result<void> read_json_fg(const RandomReader& file, const DocumentOptions& optio
     begin_feature(*object, i, options, feature);
     feature.srs = document_srs;
     if (const auto own = crs_name(*object)) feature.srs = facts.intern_srs(*own);
-    JsonShapes shapes(feature, options.limits.max_points_per_building);
+    JsonShapes shapes(feature, options.limits.max_points_per_building, true);
     if (const auto place = place_of(*object))
       PlaceReader(facts, options.limits.max_depth, shapes).read(*place, feature.srs);
     else

@@ -71,7 +71,7 @@ Result<void> read_tu3djson(const RandomReader& file, const DocumentOptions& opti
     const dom::object* const object = features.feature(i);
     if (!object) continue;  // the features are independent of each other
     begin_feature(*object, i, options, feature);
-    JsonShapes shapes(feature, options.limits.max_points_per_building);
+    JsonShapes shapes(feature, options.limits.max_points_per_building, false);
     read_geometry(*object, vertices, shapes);
     shapes.finish();
     if (auto taken = sink(feature); !taken) return taken;

@@ -3,99 +3,191 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <set>
+#include <map>
+#include <numeric>
 
-#include "core/citymodel/edges.h"
-#include "core/geometry/place.h"
+#include "core/base/union_find.h"
+#include "core/citymodel/grid.h"
 #include "core/geometry/triangulation.h"
+#include "core/validate/boundary.h"
+#include "core/validate/findings.h"
+#include "core/validate/polygons.h"
+#include "core/validate/shells.h"
+#include "core/validate/solids.h"
 
 namespace citymesh {
 namespace {
 
-/// Largest distance of a corner to the plane through the corners' mean along Newell's normal.
-double distance_to_plane_m(const Shell& shell, const Face& face) {
-  const Point3 n = ring_normal(shell.points, face.rings[0]);
-  const double length = std::hypot(n.x, n.y, n.z);
-  if (length == 0) return 0;
-  Point3 mean{};
-  double count = 0;
-  for (const Ring& ring : face.rings)
-    for (const std::uint32_t corner : ring) {
-      const Point3 p = to_metres(shell.points[corner]);
-      mean = {mean.x + p.x, mean.y + p.y, mean.z + p.z};
-      ++count;
-    }
-  mean = {mean.x / count, mean.y / count, mean.z / count};
-  double largest = 0;
-  for (const Ring& ring : face.rings)
-    for (const std::uint32_t corner : ring) {
-      const Point3 p = to_metres(shell.points[corner]);
-      largest = std::max(
-          largest,
-          std::abs(n.x * (p.x - mean.x) + n.y * (p.y - mean.y) + n.z * (p.z - mean.z)) / length);
-    }
-  return largest;
+using Numbers = std::vector<std::uint32_t>;
+
+Numbers all_of(std::size_t count) {
+  Numbers numbers(count);
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  return numbers;
 }
 
-void check_face(const Shell& shell, const Face& face, const ValidateOptions& options,
-                std::vector<Issue>& issues) {
-  const std::string& id = shell.surface_ids[face.source];
-  bool rings_usable = true;
-  for (std::size_t r = 0; r < face.rings.size(); ++r) {
-    const Ring& ring = face.rings[r];
-    const std::string where = face.rings.size() > 1 ? fmt::format("{} ring {}", id, r) : id;
-    if (std::set<std::uint32_t>(ring.begin(), ring.end()).size() < 3) {
-      issues.push_back({101, where, static_cast<double>(ring.size())});
-      rings_usable = false;
-      continue;
+/// Checks the shells of one solid; the first is the exterior.
+std::optional<SolidBody> check_solid(std::vector<Boundary>& shells, std::string name,
+                                     const ValidateOptions& options, Findings& findings) {
+  bool sound = true;
+  for (Boundary& shell : shells)
+    sound = check_polygons(shell, options, findings) &&
+            check_shell_level(shell, ShellKind::Closed, findings) && sound;
+  if (!sound) return {};
+  return check_solid_level(shells, std::move(name), findings);
+}
+
+class GeometryCheck {
+ public:
+  GeometryCheck(const Building& building, const Geometry& geometry, const ValidateOptions& options)
+      : building_(building), geometry_(geometry), options_(options) {}
+
+  Validated run() {
+    if (geometry_.polygons.empty()) {
+      findings_.add(902, [&] { return building_.gml_id; }, 0, {});
+    } else if (place_on_grid()) {
+      if (!geometry_.solids.empty() && !geometry_.footprint)
+        check_solids();
+      else
+        check_surfaces();
     }
-    for (std::size_t i = 0; i < ring.size(); ++i)
-      if (ring[i] == ring[(i + 1) % ring.size()]) {
-        issues.push_back({102, where + " " + place_text(shell.points[ring[i]]), 0});
-        rings_usable = false;
-        break;
-      }
+    result_.issues = findings_.take();
+    if (geometry_.assembled && !geometry_.footprint)
+      for (Issue& issue : result_.issues) issue.assembled = issue.code >= 300 && issue.code < 500;
+    return std::move(result_);
   }
-  if (!rings_usable) return;
-  if (const double distance = distance_to_plane_m(shell, face);
-      distance > options.planarity_tolerance_m)
-    issues.push_back({203, id, distance});
-  if (triangulate(shell.points, face.rings)) return;
-  const std::size_t before = issues.size();
-  for (std::size_t r = 0; r < face.rings.size(); ++r)
-    if (!triangulate(shell.points, std::span(face.rings).subspan(r, 1)))
-      issues.push_back({104, face.rings.size() > 1 ? fmt::format("{} ring {}", id, r) : id, 0});
-  if (issues.size() == before) issues.push_back({201, id, 0});
+
+ private:
+  bool place_on_grid() {
+    points_.reserve(geometry_.points.size());
+    for (const Point3& p : geometry_.points) {
+      const auto on_grid = to_grid(p);
+      if (!on_grid) {
+        findings_.add(issue_code::kCoordinateOutOfRange,
+                      [&] { return fmt::format("({} {} {})", p.x, p.y, p.z); }, p.x, {});
+        return false;
+      }
+      points_.push_back(*on_grid);
+    }
+    return true;
+  }
+
+  Boundary boundary(const Numbers& polygons, std::string name) const {
+    Boundary made =
+        make_boundary(building_, geometry_, points_, polygons, options_.snap_tolerance_m);
+    made.name = std::move(name);
+    return made;
+  }
+
+  void check_surfaces() {
+    std::vector<Boundary> shells;
+    shells.push_back(boundary(all_of(geometry_.polygons.size()), ""));
+    const bool shell = geometry_.assembled || geometry_.type == GeometryType::Solid;
+    if (shell && !geometry_.footprint) {
+      if (auto solid = check_solid(shells, building_.gml_id, options_, findings_))
+        result_.solids.push_back(std::move(*solid));
+    } else if (check_polygons(shells[0], options_, findings_)) {
+      if (geometry_.footprint)
+        check_footprint(shells[0]);
+      else if (geometry_.type == GeometryType::CompositeSurface)
+        check_shell_level(shells[0], ShellKind::Surface, findings_);
+    }
+    count(shells);
+  }
+
+  /// C119: areas are drawn as they are seen from above.
+  void check_footprint(const Boundary& areas) {
+    for (const TestedPolygon& polygon : areas.polygons)
+      if (ring_normal(areas.points, polygon.rings[0]).z < 0)
+        findings_.add(
+            issue_code::kFootprintTurned, [&] { return areas.label(polygon); }, 0,
+            to_metres(areas.points[polygon.rings[0][0]]));
+  }
+
+  void check_solids() {
+    const bool several = geometry_.solids.size() > 1;
+    for (std::size_t s = 0; s < geometry_.solids.size(); ++s) {
+      const Solid& solid = geometry_.solids[s];
+      const std::string of = several ? fmt::format("solid {}, ", s) : "";
+      const bool has_cavities = !solid.interiors.empty();
+      std::vector<Boundary> shells;
+      shells.push_back(boundary(solid.exterior, of + (has_cavities ? "shell 0, " : "")));
+      for (std::size_t i = 0; i < solid.interiors.size(); ++i)
+        shells.push_back(boundary(solid.interiors[i], fmt::format("{}shell {}, ", of, i + 1)));
+      const bool empty = std::any_of(shells.begin(), shells.end(),
+                                     [](const Boundary& shell) { return shell.polygons.empty(); });
+      const std::string name =
+          several ? fmt::format("{} solid {}", building_.gml_id, s) : building_.gml_id;
+      if (empty)
+        findings_.add(902, [&] { return name; }, 0, {});
+      else if (auto body = check_solid(shells, name, options_, findings_))
+        result_.solids.push_back(std::move(*body));
+      count(shells);
+    }
+    if (geometry_.type == GeometryType::CompositeSolid &&
+        result_.solids.size() == geometry_.solids.size())
+      check_composite(result_.solids, findings_);
+  }
+
+  void count(const std::vector<Boundary>& shells) {
+    for (const Boundary& shell : shells) result_.triangles += shell.triangles.size();
+  }
+
+  const Building& building_;
+  const Geometry& geometry_;
+  const ValidateOptions& options_;
+  std::vector<GridPoint> points_;
+  Findings findings_;
+  Validated result_;
+};
+
+/// Faces of cavities by the pieces in which they hang together.
+std::vector<Numbers> cavities_of(const Shell& shell) {
+  UnionFind joined(shell.points.size());
+  for (const Face& face : shell.faces)
+    for (const Ring& ring : face.rings)
+      for (const std::uint32_t corner : ring)
+        if (face.cavity) joined.join(face.rings[0][0], corner);
+  std::map<std::uint32_t, Numbers> pieces;
+  for (std::uint32_t f = 0; f < shell.faces.size(); ++f) {
+    const Face& face = shell.faces[f];
+    if (face.cavity && !face.rings.empty() && !face.rings[0].empty())
+      pieces[joined.root(face.rings[0][0])].push_back(f);
+  }
+  std::vector<Numbers> cavities;
+  for (auto& [root, faces] : pieces) cavities.push_back(std::move(faces));
+  std::sort(cavities.begin(), cavities.end());
+  return cavities;
 }
 
 }  // namespace
 
-std::vector<Issue> validate(const Shell& shell, const ValidateOptions& options) {
-  std::vector<Issue> issues;
-  for (const Face& face : shell.faces) check_face(shell, face, options, issues);
-  if (shell.faces.size() < 4) issues.push_back({301, "", static_cast<double>(shell.faces.size())});
+Validated validate(const Building& building, const Geometry& geometry,
+                   const ValidateOptions& options) {
+  return GeometryCheck(building, geometry, options).run();
+}
 
-  struct Defect {
-    int code;
-    std::string where{};
-    double count = 0;
-  };
-  Defect defects[]{{302}, {303}, {307}};
-  for (const auto& [edge, uses] : edge_uses(shell)) {
-    if (edge.first == edge.second) continue;
-    Defect* defect = uses.size() == 1                     ? &defects[0]
-                     : uses.size() > 2                    ? &defects[1]
-                     : uses[0].forward == uses[1].forward ? &defects[2]
-                                                          : nullptr;
-    if (!defect) continue;
-    if (defect->count++ == 0)
-      defect->where =
-          place_text(shell.points[edge.first]) + "–" + place_text(shell.points[edge.second]);
+std::vector<Issue> validate(const Shell& shell, const ValidateOptions& options) {
+  Numbers outer;
+  for (std::uint32_t f = 0; f < shell.faces.size(); ++f)
+    if (!shell.faces[f].cavity) outer.push_back(f);
+  std::vector<Boundary> shells;
+  shells.push_back(make_boundary(shell, outer, options.snap_tolerance_m));
+  for (const Numbers& cavity : cavities_of(shell)) {
+    shells.push_back(make_boundary(shell, cavity, options.snap_tolerance_m));
+    shells.back().name = fmt::format("shell {}, ", shells.size() - 1);
   }
-  for (const Defect& defect : defects)
-    if (defect.count > 0) issues.push_back({defect.code, defect.where, defect.count});
-  return issues;
+  Findings findings;
+  check_solid(shells, "", options, findings);
+  return findings.take();
+}
+
+std::vector<Issue> validate_parts(const std::vector<SolidBody>& solids) {
+  std::vector<const SolidBody*> all;
+  for (const SolidBody& solid : solids) all.push_back(&solid);
+  Findings findings;
+  check_overlaps(all, 601, findings);
+  return findings.take();
 }
 
 }  // namespace citymesh

@@ -34,8 +34,8 @@ Cells cells_of(std::string_view row) {
   return cells;
 }
 
-/// Rows of the table whose first column is `header`, by their first cell; backticks are dropped
-/// there.
+/// Rows of the table whose first column is `header`, by their first cell; backticks and the targets
+/// of links are dropped there.
 std::map<std::string, Cells> table(const std::filesystem::path& page, const std::string& header) {
   std::ifstream file(page);
   EXPECT_TRUE(file.is_open()) << page;
@@ -48,6 +48,7 @@ std::map<std::string, Cells> table(const std::filesystem::path& page, const std:
     }
     auto cells = cells_of(line);
     if (cells.empty()) continue;
+    if (cells[0].starts_with("[")) cells[0] = cells[0].substr(1, cells[0].find(']') - 1);
     if (cells[0] == header) {
       inside = true;
     } else if (inside && !cells[0].starts_with("-")) {
@@ -95,6 +96,20 @@ TEST(Docs, TheListOfProcessesIsComplete) {
   const auto rows =
       table(std::filesystem::path(CITYMESH_DOCS) / "processes" / "README.md", "process");
   EXPECT_EQ(rows.size(), processes().size());
+}
+
+TEST(Docs, EveryIssueCodeHasAPage) {
+  for (int code = 1; code < kOwnIssueBase + 1000; ++code) {
+    const auto name = issue_name(code);
+    if (name == "UNKNOWN_ISSUE") continue;
+    const auto page =
+        std::filesystem::path(CITYMESH_DOCS) / "issues" / (issue_code_text(code) + ".md");
+    std::ifstream file(page);
+    ASSERT_TRUE(file.is_open()) << page;
+    std::string title;
+    std::getline(file, title);
+    EXPECT_EQ(title, "# " + std::string(name));
+  }
 }
 
 TEST(Docs, EveryIssueCodeIsOnTheIndexPage) {

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "core/validate/boundary.h"
+#include "core/validate/findings.h"
+#include "core/validate/validate.h"
+
+namespace citymesh {
+
+/// Checks the rings and polygons of a boundary one by one (1xx, 2xx). When all are sound, fills its
+/// triangles and returns true.
+bool check_polygons(Boundary& boundary, const ValidateOptions& options, Findings& findings);
+
+}  // namespace citymesh
