@@ -77,11 +77,11 @@ def citymesh_codes(program, path, levels, folder):
         output = Path(folder) / f"citymesh_{level}"
         start = time.monotonic()
         done = subprocess.run(
-            [program, "validate", str(path), "--set", f'lod=["{level}"]', "--set", "source_crs=EPSG:28992", "--threads", "1",
+            [program, "validate", str(path), "--set", f'lod={level}', "--set", "source_crs=EPSG:28992", "--threads", "1",
              "--overwrite", "--output", str(output)], check=False, capture_output=True, text=True)
         if done.returncode == 2:
             done = subprocess.run(
-                [program, "validate", str(path), "--set", f'lod=["{level}"]', "--threads", "1", "--overwrite", "--output",
+                [program, "validate", str(path), "--set", f'lod={level}', "--threads", "1", "--overwrite", "--output",
                  str(output)], check=False, capture_output=True, text=True)
         if done.returncode == 2:
             sys.exit(f"{path}: {done.stderr}")

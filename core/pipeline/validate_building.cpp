@@ -66,14 +66,15 @@ ValidatedBuilding validate_building(const NamedBuilding& named, const Inputs& in
   ValidatedBuilding result;
   BuildingReport& report = result.report;
   std::string lod;
-  std::vector<SolidBody> comparable;  // of one level
+  std::vector<std::size_t> comparable;  // solids of one level
   bool sound = true;
   const auto collect = [&](ValidatedPart& part) {
     sound = sound && part.report.issues_before.empty();
     if (lod.empty()) lod = part.report.lod;
-    if (part.may_overlap && part.report.lod == lod)
-      comparable.insert(comparable.end(), part.solids.begin(), part.solids.end());
-    std::move(part.solids.begin(), part.solids.end(), std::back_inserter(result.solids));
+    for (SolidBody& solid : part.solids) {
+      if (part.may_overlap && part.report.lod == lod) comparable.push_back(result.solids.size());
+      result.solids.push_back(std::move(solid));
+    }
   };
 
   if (takes_own_geometry(building, inputs.lod)) {
@@ -96,7 +97,9 @@ ValidatedBuilding validate_building(const NamedBuilding& named, const Inputs& in
     report.parts.push_back(std::move(part.report));
   }
   if (sound && comparable.size() > 1) {
-    std::vector<Issue> overlaps = validate_parts(comparable);
+    std::vector<const SolidBody*> solids;
+    for (const std::size_t i : comparable) solids.push_back(&result.solids[i]);
+    std::vector<Issue> overlaps = validate_parts(solids);
     std::move(overlaps.begin(), overlaps.end(), std::back_inserter(report.issues_before));
   }
   if (named.duplicate) {

@@ -79,8 +79,9 @@ bool overlap_in_plane(const Corners& s, const Corners& t) {
 /// Whether a common place of `a` with `b` is known to lie on the wanted side: tries the corners of
 /// the one, then the centres and the middles of the edges of its triangles.
 bool has_sample(const ClosedSurface& of, const ClosedSurface& in, Side wanted) {
+  const Locator locator(in.points, in.triangles);
   const auto is = [&](const GridPoint& place, std::int64_t parts) {
-    return locate(in.points, in.triangles, place, parts) == wanted;
+    return locator.locate(place, parts) == wanted;
   };
   const auto reaches = [&](const GridPoint& p) {
     return wanted == Side::Outside || in.box.meets(GridBox::of(p));
@@ -128,7 +129,7 @@ bool surfaces_cross(const ClosedSurface& a, const ClosedSurface& b) {
 
 bool first_corner_in(const ClosedSurface& of, const ClosedSurface& in) {
   const GridPoint& p = of.points[of.triangles[0][0]];
-  return in.box.meets(GridBox::of(p)) && locate(in.points, in.triangles, p) == Side::Inside;
+  return in.box.meets(GridBox::of(p)) && Locator(in.points, in.triangles).locate(p) == Side::Inside;
 }
 
 }  // namespace

@@ -48,9 +48,9 @@ Point3 minus(const Point3& a, const Point3& b) { return {a.x - b.x, a.y - b.y, a
 double depth_m(const ClosedSurface& of, const ClosedSurface& in) {
   double deepest = 0;
   std::optional<DistanceField> field;
+  const Locator locator(in.points, in.triangles);
   for (const GridPoint& p : of.points) {
-    if (!in.box.meets(GridBox::of(p)) || locate(in.points, in.triangles, p) != Side::Inside)
-      continue;
+    if (!in.box.meets(GridBox::of(p)) || locator.locate(p) != Side::Inside) continue;
     if (!field) field.emplace(in.points, in.triangles);
     deepest = std::max(deepest, field->distance_m(p));
   }

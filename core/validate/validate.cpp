@@ -182,11 +182,9 @@ std::vector<Issue> validate(const Shell& shell, const ValidateOptions& options) 
   return findings.take();
 }
 
-std::vector<Issue> validate_parts(const std::vector<SolidBody>& solids) {
-  std::vector<const SolidBody*> all;
-  for (const SolidBody& solid : solids) all.push_back(&solid);
+std::vector<Issue> validate_parts(std::span<const SolidBody* const> solids) {
   Findings findings;
-  check_overlaps(all, 601, findings);
+  check_overlaps(solids, 601, findings);
   return findings.take();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/citymodel/building.h"
@@ -38,6 +39,6 @@ Validated validate(const Building& building, const Geometry& geometry,
 std::vector<Issue> validate(const Shell& shell, const ValidateOptions& options);
 
 /// 601: pairs of solids of one building whose insides overlap.
-std::vector<Issue> validate_parts(const std::vector<SolidBody>& solids);
+std::vector<Issue> validate_parts(std::span<const SolidBody* const> solids);
 
 }  // namespace citymesh
