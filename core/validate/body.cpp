@@ -12,9 +12,9 @@
 namespace citymesh {
 namespace {
 
-using Corners = std::array<GridPoint, 3>;
+using GridCorners = std::array<GridPoint, 3>;
 
-Corners corners_of(const ClosedSurface& surface, std::uint32_t i) {
+GridCorners corners_of(const ClosedSurface& surface, std::uint32_t i) {
   const Triangle& t = surface.triangles[i];
   return {surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]};
 }
@@ -43,21 +43,21 @@ bool any_near_pair(const ClosedSurface& a, const ClosedSurface& b,
 }
 
 /// Whether segment pq goes through the inside of a triangle, from one side to the other.
-bool pierces(const GridPoint& p, const GridPoint& q, const Corners& t) {
+bool pierces(const GridPoint& p, const GridPoint& q, const GridCorners& t) {
   if (orient3d(t[0], t[1], t[2], p) * orient3d(t[0], t[1], t[2], q) >= 0) return false;
   const int u = orient3d(p, q, t[0], t[1]), v = orient3d(p, q, t[1], t[2]),
             w = orient3d(p, q, t[2], t[0]);
   return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
 }
 
-bool either_pierces(const Corners& s, const Corners& t) {
+bool either_pierces(const GridCorners& s, const GridCorners& t) {
   for (std::size_t i = 0; i < 3; ++i)
     if (pierces(s[i], s[(i + 1) % 3], t) || pierces(t[i], t[(i + 1) % 3], s)) return true;
   return false;
 }
 
 /// Whether two triangles of one plane have more than a line in common.
-bool overlap_in_plane(const Corners& s, const Corners& t) {
+bool overlap_in_plane(const GridCorners& s, const GridCorners& t) {
   for (const GridPoint& p : t)
     if (orient3d(s[0], s[1], s[2], p) != 0) return false;
   const Axis axis = dominant_axis(s[0], s[1], s[2]);
@@ -104,13 +104,13 @@ bool has_sample(const ClosedSurface& of, const ClosedSurface& in, Side wanted) {
 
 /// Whether the plane of a face of `a` has all of `a` behind it and all of `b` before it.
 bool face_separates(const ClosedSurface& a, const ClosedSurface& b) {
-  const auto all_on = [](const ClosedSurface& surface, const Corners& t, int side) {
+  const auto all_on = [](const ClosedSurface& surface, const GridCorners& t, int side) {
     return std::all_of(surface.points.begin(), surface.points.end(), [&](const GridPoint& p) {
       return orient3d(t[0], t[1], t[2], p) * side >= 0;
     });
   };
   for (std::uint32_t i = 0; i < a.triangles.size(); ++i) {
-    const Corners t = corners_of(a, i);
+    const GridCorners t = corners_of(a, i);
     if (all_on(b, t, 1) && all_on(a, t, -1)) return true;
   }
   return false;

@@ -67,9 +67,9 @@ class Snapper {
 };
 
 /// Numbers the corners of one geometry, each once.
-class Corners {
+class CornerNumbers {
  public:
-  Corners(Boundary& boundary, std::span<const GridPoint> points, double tolerance_m)
+  CornerNumbers(Boundary& boundary, std::span<const GridPoint> points, double tolerance_m)
       : snapper_(boundary.points, tolerance_m), points_(points), number_(points.size(), kNew) {}
 
   Ring operator()(const Ring& ring) {
@@ -100,7 +100,7 @@ Boundary make_boundary(const Building& building, const Geometry& geometry,
                        std::span<const GridPoint> points, std::span<const std::uint32_t> polygons,
                        double snap_tolerance_m) {
   Boundary boundary;
-  Corners corners(boundary, points, snap_tolerance_m);
+  CornerNumbers corners(boundary, points, snap_tolerance_m);
   for (const std::uint32_t number : polygons) {
     const Polygon& polygon = geometry.polygons[number];
     TestedPolygon tested;
@@ -126,7 +126,7 @@ Boundary make_boundary(const Building& building, const Geometry& geometry,
 Boundary make_boundary(const Shell& shell, std::span<const std::uint32_t> faces,
                        double snap_tolerance_m) {
   Boundary boundary;
-  Corners corners(boundary, shell.points, snap_tolerance_m);
+  CornerNumbers corners(boundary, shell.points, snap_tolerance_m);
   for (const std::uint32_t number : faces) {
     const Face& face = shell.faces[number];
     TestedPolygon tested;

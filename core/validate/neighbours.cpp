@@ -64,12 +64,12 @@ struct Facing {
   Point3 at{};
 };
 
-using Corners = std::array<Point3, 3>;
+using LocalCorners = std::array<Point3, 3>;
 
 /// What of triangle t stands in front of s and faces it; the angle between them is at most a few
 /// degrees. Metres from the first corner of s.
-std::optional<Facing> facing(const Corners& s, const Corners& t) {
-  const auto normal = [](const Corners& c) {
+std::optional<Facing> facing(const LocalCorners& s, const LocalCorners& t) {
+  const auto normal = [](const LocalCorners& c) {
     const Point3 a = minus(c[1], c[0]), b = minus(c[2], c[0]);
     return Point3{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
   };
@@ -146,7 +146,7 @@ void for_each_facing(const ClosedSurface& a, const ClosedSurface& b, double reac
       const auto local = [&](const GridPoint& p) {
         return to_metres({p.x - base.x, p.y - base.y, p.z - base.z});
       };
-      Corners s, t;
+      LocalCorners s, t;
       for (std::size_t i = 0; i < 3; ++i) {
         s[i] = local(a.points[triangle[i]]);
         t[i] = local(b.points[other[i]]);

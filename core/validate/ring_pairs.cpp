@@ -116,9 +116,9 @@ bool same_corners(FlatRing a, FlatRing b) {
 
 /// Rings and the points where they touch, as a graph: a cycle in it encloses a piece of the
 /// interior.
-class Contacts {
+class TouchGraph {
  public:
-  explicit Contacts(std::size_t rings) : rings_(rings) {}
+  explicit TouchGraph(std::size_t rings) : rings_(rings) {}
 
   void add(std::size_t ring, std::size_t other, const std::vector<GridPoint2>& touches) {
     for (const GridPoint2& p : touches) {
@@ -162,7 +162,7 @@ std::optional<RingPair> find_ring_defect(std::span<const FlatRing> rings) {
     return RingPair{same ? RingDefect::Same : RingDefect::Intersect, ring, other, relation.place};
   };
 
-  Contacts contacts(rings.size());
+  TouchGraph contacts(rings.size());
   std::optional<RingPair> outside, nested;
   for (std::size_t r = 1; r < rings.size(); ++r) {
     const Relation relation = indexed[r].relation_to(indexed[0]);

@@ -20,7 +20,7 @@ namespace {
 
 using Numbers = std::vector<std::uint32_t>;
 
-Numbers all_of(std::size_t count) {
+Numbers numbers_to(std::size_t count) {
   Numbers numbers(count);
   std::iota(numbers.begin(), numbers.end(), 0u);
   return numbers;
@@ -81,7 +81,7 @@ class GeometryCheck {
 
   void check_surfaces() {
     std::vector<Boundary> shells;
-    shells.push_back(boundary(all_of(geometry_.polygons.size()), ""));
+    shells.push_back(boundary(numbers_to(geometry_.polygons.size()), ""));
     const bool shell = geometry_.assembled || geometry_.type == GeometryType::Solid;
     if (shell && !geometry_.footprint) {
       if (auto solid = check_solid(shells, building_.gml_id, options_, findings_))

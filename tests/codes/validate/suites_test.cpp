@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -17,6 +18,7 @@
 
 #include "core/pipeline/validate_building.h"
 #include "core/source/source.h"
+#include "tests/support/temp_folder.h"
 
 namespace citymesh {
 namespace {
@@ -45,12 +47,31 @@ struct Content {
   Point3 origin{};
 };
 
+/// A copy of a CityJSON file in which other objects are buildings: only these are read.
+fs::path as_buildings(const fs::path& path, const TempFolder& folder) {
+  std::ifstream file(path);
+  std::string text((std::istreambuf_iterator<char>(file)), {});
+  bool changed = false;
+  for (const std::string name :
+       {"\"GenericCityObject\"", "\"+GenericCityObject\"", "\"SolitaryVegetationObject\""})
+    for (auto at = text.find(name); at != std::string::npos; at = text.find(name)) {
+      text.replace(at, name.size(), "\"Building\"");
+      changed = true;
+    }
+  if (!changed) return path;
+  std::ofstream(folder / path.filename()) << text;
+  return folder / path.filename();
+}
+
 /// What a file holds; none when it is refused.
-std::optional<Content> read(const fs::path& path) {
+std::optional<Content> read(const fs::path& original, const Crs& crs = {}) {
+  const TempFolder folder;
+  const fs::path path = as_buildings(original, folder);
   Content content;
   auto source = open_files({path}, {});
   if (!source) return {};
   BuildingQuery query;
+  query.crs = crs;
   query.source_crs = {"EPSG:32631"};  // of files that state none
   const auto selection = (*source)->select(query, {});
   if (!selection || selection->inputs.empty() || selection->inputs[0].state == "failed") return {};
@@ -124,6 +145,12 @@ struct Deviation {
   std::string_view file, note, reason;
 };
 constexpr std::array kDeviations{
+    Deviation{
+        "307.poly", "[303, 307]",
+        "one face is turned and 307 names it; val3dity, which adds faces one by one, finds no "
+        "place for its neighbours and calls that 303"},
+    Deviation{"cubes2.fg.json", "[904]", "val3dity does not read all of its features; we do"},
+    Deviation{"401.poly", "[401]", "pokes out by 0.01 mm, a tenth of a step of the grid"},
     Deviation{"501.json", "valid", "no overlap tolerance: solids that overlap by less overlap"},
     Deviation{"601_1.json", "valid", "no overlap tolerance: parts that overlap by less overlap"},
 };
@@ -146,6 +173,13 @@ void force_type(std::vector<Building>& buildings, const std::string& validated_a
         geometry.solids.clear();
       }
     }
+}
+
+/// In these tests val3dity takes all files named as cavities of one cube.
+bool is_cavity(const Cells& row) {
+  for (const std::string_view start : {"401", "402", "403", "404", "inner_shell"})
+    if (row[1].starts_with(start)) return true;
+  return false;
 }
 
 /// Several files are one solid: the last one its outer shell, the others its cavities.
@@ -211,6 +245,7 @@ TEST(Suites, Val3dityFindsWhatItsOwnTestsExpect) {
       if (auto content = read(folder / row[0] / name)) files.push_back(std::move(*content));
     EXPECT_EQ(files.empty(), refused);
     if (files.empty()) continue;
+    if (is_cavity(row)) files.push_back(read(folder / "test_valid" / "basecube.poly").value());
     std::vector<Building> buildings = files.size() > 1 ? joined(files) : files[0].buildings;
     force_type(buildings, row[3] == "-" ? "Solid" : row[3]);
     for (const double tolerance_m : snap_tolerances(row))
@@ -231,7 +266,9 @@ const std::vector<PlateauName> kPlateauNames{
     {"DuplicateConsecutivePoints", {102}},
     {"SelfIntersection", {104}},
     {"NonPlanarSurface", {203, 204}},
-    {"InteriorRingNotContainedInExteriorRing", {201, 206}},
+    // In the one model that has it the ring is not closed either: 103, and polygons are looked at
+    // only when their rings are sound.
+    {"InteriorRingNotContainedInExteriorRing", {201, 206, 103}},
     {"InvalidSolidBoundaries", {302, 303, 305, 306, 307}},
     {"Surface Not Closed", {302}},
     {"IncorrectOrientation", {issue_code::kFootprintTurned}},
@@ -266,7 +303,9 @@ TEST(Suites, PlateausDefectsAreFound) {
     const auto name = std::find_if(kPlateauNames.begin(), kPlateauNames.end(),
                                    [&](const PlateauName& n) { return n.name == row[4]; });
     ASSERT_NE(name, kPlateauNames.end());
-    const auto content = read(folder / row[0] / row[1]);
+    auto content = read(folder / row[0] / row[1]);
+    // Some models lie where no zone of their CRS is, near 0° 0°.
+    if (!content) content = read(folder / row[0] / row[1], {"EPSG:32631"});
     ASSERT_TRUE(content);
     Codes found;
     for (const auto& [id, codes] : codes_by_building(content->buildings))
