@@ -127,6 +127,7 @@ void append_issues(std::string& json, std::span<const Issue> issues) {
     members.text("where", issues[i].where);
     members.number("measured", issues[i].measured);
     append_place(members, issues[i].at);
+    if (issues[i].assembled) members.key("assembled") += "true";
     json += '}';
   }
   json += ']';
