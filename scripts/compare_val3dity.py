@@ -41,7 +41,7 @@ def unpacked(path, folder):
 
 def objects_of(path):
     """id → (type, ids of parts, level of each geometry) of every city object."""
-    text = path.read_text(encoding="utf-8")
+    text = path.read_text(encoding="utf-8-sig")
     documents = [json.loads(line) for line in text.splitlines() if line.strip()] if path.suffix == ".jsonl" else [json.loads(text)]
     objects = {}
     for document in documents:
