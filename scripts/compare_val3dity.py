@@ -50,9 +50,8 @@ def rings_of(boundaries):
         yield from rings_of(part)
 
 
-def is_on_tolerance(document, geometry):
+def is_on_tolerance(document, geometry, scale):
     """Whether two points in a row of a ring are as far apart as the snap tolerance, but for rounding."""
-    scale = document.get("transform", {}).get("scale", [1, 1, 1])
     vertices = document["vertices"]
     for ring in rings_of(geometry.get("boundaries", [])):
         for a, b in zip(ring, ring[1:] + ring[:1]):
@@ -67,10 +66,11 @@ def objects_of(path):
     text = path.read_text(encoding="utf-8-sig")
     documents = [json.loads(line) for line in text.splitlines() if line.strip()] if path.suffix == ".jsonl" else [json.loads(text)]
     objects = {}
+    scale = documents[0].get("transform", {}).get("scale", [1, 1, 1])  # of a sequence: that of its first line
     for document in documents:
         for key, value in document.get("CityObjects", {}).items():
             levels = [str(geometry.get("lod", "")) for geometry in value.get("geometry", [])]
-            close = {level for level, geometry in zip(levels, value.get("geometry", [])) if is_on_tolerance(document, geometry)}
+            close = {level for level, geometry in zip(levels, value.get("geometry", [])) if is_on_tolerance(document, geometry, scale)}
             objects[key] = (value["type"], value.get("children", []), levels, close)
     return objects
 
