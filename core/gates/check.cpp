@@ -23,6 +23,9 @@ struct HalfEdge {
   bool forward;  ///< the face walks low → high
 };
 
+/// Intersecting pairs that are counted: in a tangle nearly all pairs are, and the verdict is clear.
+constexpr std::uint64_t kMaxClashes = 10'000;
+
 /// Counts what violates a gate and keeps the first place.
 class Finding {
  public:
@@ -35,6 +38,7 @@ class Finding {
     if (count_ > 0) failures.push_back({gate_, count_, where_});
   }
   bool any() const { return count_ > 0; }
+  std::uint64_t count() const { return count_; }
 
  private:
   std::string_view gate_;
@@ -191,14 +195,21 @@ class ShellCheck {
       component.box.add(box);
       component.faces.push_back(faces_[f]);
     }
-    Finding inward("G7"), interior("G8");
+    std::vector<const Component*> all;
+    std::vector<GridBox> boxes;
     for (const auto& [id, component] : components) {
-      const GridPoint& corner = points_[component.faces[0][0]];
+      all.push_back(&component);
+      boxes.push_back(component.box);
+    }
+    const BoxTree tree(boxes);
+    Finding inward("G7"), interior("G8");
+    for (std::uint32_t i = 0; i < all.size(); ++i) {
+      const GridPoint& corner = points_[all[i]->faces[0][0]];
       int depth = 0;
-      for (const auto& [other_id, other] : components)
-        if (other_id != id && other.box.meets(GridBox::of(corner)) && encloses(other.faces, corner))
-          ++depth;
-      const Int128 volume = volume6(points_, component.faces);
+      tree.for_each_meeting(GridBox::of(corner), [&](std::uint32_t other) {
+        if (other != i && encloses(all[other]->faces, corner)) ++depth;
+      });
+      const Int128 volume = volume6(points_, all[i]->faces);
       const auto where = [&] { return place_text(corner); };
       if (depth % 2 == 0 && volume <= 0) inward.add(where);
       if (depth % 2 == 1 && volume >= 0) interior.add(where);
@@ -258,7 +269,7 @@ class ShellCheck {
       return std::array<GridPoint, 3>{points_[faces_[f][0]], points_[faces_[f][1]],
                                       points_[faces_[f][2]]};
     };
-    for (std::uint32_t f = 0; f < faces_.size(); ++f)
+    for (std::uint32_t f = 0; f < faces_.size() && clash.count() < kMaxClashes; ++f)
       tree.for_each_meeting(boxes[f], [&](std::uint32_t other) {
         if (other > f && triangles_clash(corners(f), corners(other)))
           clash.add([&] {
