@@ -54,8 +54,9 @@ class Refinement {
 
   bool run() {
     for (std::uint32_t round = 0; round < options_.max_rounds; ++round) {
-      const bool merged = merge_near_points();
-      const bool inserted = insert_near_vertices();
+      const bool near = round < kNearRounds;
+      const bool merged = near && merge_near_points();
+      const bool inserted = near && insert_near_vertices();
       if (facets_.size() > max_facets_) return false;
       bool cut = false;
       if (!cut_crossings(cut)) return false;
@@ -86,6 +87,9 @@ class Refinement {
   /// Vertices reach further for each other than for edges and facets, else an edge could take a
   /// vertex in that its ends are too far from to merge with, and give it back in the next round.
   static constexpr double kNear = 0.7;
+  /// Later rounds leave alone what is near but does not cross: bringing it together bends facets,
+  /// which may cross anew, and so on.
+  static constexpr std::uint32_t kNearRounds = 2;
   static constexpr std::uint64_t kMaxGrowth = 8;  ///< beyond it the rounds do not converge
 
   std::uint32_t add_point(const GridPoint& p) {

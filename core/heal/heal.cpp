@@ -142,6 +142,7 @@ struct Rebuild {
 constexpr std::array kRebuilds{
     Rebuild{"rebuilt_2_5d", rebuild_2_5d, false},
     Rebuild{"rebuilt_3d", rebuild_3d, true},
+    Rebuild{"rebuilt_3d", rebuild_3d_triangles, true},
     Rebuild{"wrapped", wrap, false},
 };
 

@@ -25,4 +25,7 @@ void separate_contacts(Boundary& boundary, double gap_m);
 /// the last face is a new face.
 Shell faces_of(const Boundary& boundary, const Shell& input);
 
+/// As faces_of(), but every piece stays a triangle.
+Shell triangles_of(const Boundary& boundary, const Shell& input);
+
 }  // namespace citymesh

@@ -87,35 +87,55 @@ std::vector<Ring> polygon_of(const Boundary& boundary, const std::vector<std::ui
   return loops;
 }
 
-}  // namespace
+/// Collects faces that continue those of the input.
+class Continued {
+ public:
+  Continued(const Boundary& boundary, const Shell& input) : input_(input) {
+    shell_.points = boundary.points;
+    shell_.surface_ids = input.surface_ids;
+  }
 
-Shell faces_of(const Boundary& boundary, const Shell& input) {
-  Shell shell;
-  shell.points = boundary.points;
-  shell.surface_ids = input.surface_ids;
-  const auto add = [&](std::vector<Ring> rings, std::uint32_t parent) {
+  void add(std::vector<Ring> rings, std::uint32_t parent) {
     Face face;
-    if (parent < input.faces.size()) {
-      face = input.faces[parent];
+    if (parent < input_.faces.size()) {
+      face = input_.faces[parent];
     } else {
       face.added = true;
     }
     face.rings = std::move(rings);
-    shell.faces.push_back(std::move(face));
-  };
-  for (const auto& [root, region] : regions_of(boundary)) {
-    const std::uint32_t parent = boundary.parents[root];
-    std::vector<Ring> polygon = polygon_of(boundary, region);
-    if (!polygon.empty()) {
-      add(std::move(polygon), parent);
-      continue;
-    }
-    for (const std::uint32_t f : region) {
-      const Triangle& t = boundary.triangles[f];
-      add({{t[0], t[1], t[2]}}, parent);
-    }
+    shell_.faces.push_back(std::move(face));
   }
-  return shell;
+  void add_triangle(const Triangle& t, std::uint32_t parent) {
+    add({Ring(t.begin(), t.end())}, parent);
+  }
+
+  Shell take() { return std::move(shell_); }
+
+ private:
+  const Shell& input_;
+  Shell shell_;
+};
+
+}  // namespace
+
+Shell faces_of(const Boundary& boundary, const Shell& input) {
+  Continued shell(boundary, input);
+  for (const auto& [root, region] : regions_of(boundary)) {
+    std::vector<Ring> polygon = polygon_of(boundary, region);
+    if (polygon.empty())
+      for (const std::uint32_t f : region)
+        shell.add_triangle(boundary.triangles[f], boundary.parents[f]);
+    else
+      shell.add(std::move(polygon), boundary.parents[root]);
+  }
+  return shell.take();
+}
+
+Shell triangles_of(const Boundary& boundary, const Shell& input) {
+  Continued shell(boundary, input);
+  for (std::size_t f = 0; f < boundary.triangles.size(); ++f)
+    shell.add_triangle(boundary.triangles[f], boundary.parents[f]);
+  return shell.take();
 }
 
 }  // namespace citymesh

@@ -59,10 +59,8 @@ std::optional<Arrangement> closed(Arrangement first, std::uint32_t gap,
   return second;
 }
 
-}  // namespace
-
-std::optional<Shell> rebuild_3d(const Shell& input, const ReconstructOptions& options,
-                                const RunContext& context) {
+std::optional<Boundary> solid_of(const Shell& input, const ReconstructOptions& options,
+                                 const RunContext& context) {
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> face_of;
   for (std::uint32_t f = 0; f < input.faces.size(); ++f)
@@ -102,7 +100,21 @@ std::optional<Shell> rebuild_3d(const Shell& input, const ReconstructOptions& op
   }
   if (boundary.triangles.empty() || lost > kMaxLost * all) return {};
   separate_contacts(boundary, kGap_m);
-  return faces_of(boundary, input);
+  return boundary;
+}
+
+}  // namespace
+
+std::optional<Shell> rebuild_3d(const Shell& input, const ReconstructOptions& options,
+                                const RunContext& context) {
+  const auto boundary = solid_of(input, options, context);
+  return boundary ? std::optional(faces_of(*boundary, input)) : std::nullopt;
+}
+
+std::optional<Shell> rebuild_3d_triangles(const Shell& input, const ReconstructOptions& options,
+                                          const RunContext& context) {
+  const auto boundary = solid_of(input, options, context);
+  return boundary ? std::optional(triangles_of(*boundary, input)) : std::nullopt;
 }
 
 }  // namespace citymesh
