@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/pipeline/pipeline.h"
+#include "core/write/write.h"
 #include "services/rest/documents.h"
 #include "services/rest/links.h"
 #include "services/rest/problem.h"
@@ -55,14 +56,15 @@ struct Wanted {
   Transmission transmission;
 };
 
-/// What was asked for, or every output of the process as a link. An output that wrote no file is
+/// What was asked for, or the report and every format as a link. An output that wrote no file is
 /// left out.
 std::vector<Wanted> wanted_outputs(const Job& job) {
   auto outputs = job.spec.outputs;
   if (outputs.empty())
     if (const auto* process = find_process(job.spec.process))
       for (const auto& output : process->outputs)
-        outputs[std::string(output.id)] = Transmission::Reference;
+        if (output.id == "report" || find_format(output.id) != nullptr)
+          outputs[std::string(output.id)] = Transmission::Reference;
   std::vector<Wanted> wanted;
   for (const auto& [output, transmission] : outputs)
     if (const auto* file = find_result(job, output)) wanted.push_back({output, file, transmission});

@@ -74,13 +74,25 @@ class JobCycle(ServiceTest):
         created = self.service.send("POST", "/processes/heal/execution", {"inputs": {"bbox": CITY}})
         self.assertEqual(created.status, 201, created.body)
         job = created.headers["Location"]
-        self.assertEqual(self.service.wait(job)["status"], "successful")
+        status = self.service.wait(job)
+        self.assertEqual(status["status"], "successful")
         results = self.service.get(job + "/results").json()
-        self.assertEqual(set(results), {"report", "cityjson", "errors_glb"})
+        self.assertEqual(set(results), {"report", "cityjson"})
         report, model = (self.service.get(results[name]["href"]).json() for name in ("report", "cityjson"))
         self.assertEqual(report["process"], "heal")
         delivered = {building["gml_id"] for building in report["buildings"] if building["outcome"] == "delivered"}
         self.assertTrue(delivered and delivered <= model["CityObjects"].keys())
+        self.assertIn("errors.glb", {link["title"] for link in status["links"] if link["rel"] == "item"})
+        self.assertEqual(self.service.get(job + "/results/errors_glb").body[:4], b"glTF")
+
+    def test_errors_glb_is_a_result_where_the_process_writes_it(self):
+        job = self.service.execute({"bbox": CITY}, process="validate", outputs={"errors_glb": {}})
+        self.assertEqual(self.service.wait(job)["status"], "successful")
+        self.assertEqual(self.service.get(job + "/results").body[:4], b"glTF")
+        exported = self.service.execute({"bbox": CITY})
+        status = self.service.wait(exported)
+        self.assertNotIn("errors.glb", {link["title"] for link in status["links"]})
+        self.assertEqual(self.service.get(exported + "/results/errors_glb").status, 404)
 
     def test_results_by_value_in_every_form(self):
         raw = self.service.execute({"bbox": CITY}, outputs={"obj": {}})

@@ -75,9 +75,9 @@ class Service:
     def get(self, target, headers=None):
         return self.send("GET", target, headers=headers)
 
-    def execute(self, inputs, **more):
+    def execute(self, inputs, process="export-for-simulation", **more):
         """The URL of a new job."""
-        answer = self.send("POST", EXECUTION, {"inputs": inputs, **more})
+        answer = self.send("POST", f"/processes/{process}/execution", {"inputs": inputs, **more})
         assert answer.status == 201, answer.body
         return answer.headers["Location"]
 

@@ -241,6 +241,19 @@ TEST_F(RestApi, ResultsOfAPlainRequestAreADocumentOfLinks) {
     EXPECT_THAT((std::vector<std::string>{"report", "obj", "stl_binary"}), Contains(output));
 }
 
+TEST_F(RestApi, OutputsThatAreAbsentAreTheReportAndTheFormats) {
+  auto files = JobService::export_files();
+  files.push_back({"errors_glb", "errors.glb", "model/gltf-binary", "glTF"});
+  const auto response = send("POST", "/processes/heal/execution", kBox);
+  const std::string id = document(response)["jobID"];
+  service_.succeed(service_.start(), files);
+  const auto results = document(get("/jobs/" + id + "/results"));
+  EXPECT_TRUE(results.contains("report"));
+  EXPECT_TRUE(results.contains("obj"));
+  EXPECT_FALSE(results.contains("errors_glb"));
+  EXPECT_EQ(text(get("/jobs/" + id + "/results/errors_glb")), "glTF");
+}
+
 TEST_F(RestApi, RawResultOfOneValueIsTheFileItself) {
   const auto id = finished(R"({"outputs":{"obj":{}}})");
   const auto response = get("/jobs/" + id + "/results");
