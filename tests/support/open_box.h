@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace citymesh::test {
 
@@ -19,6 +20,19 @@ inline std::string open_box_cityjson() {
 {"type":"RoofSurface","id":"roof"}],"values":[0,1,2,3,4]}}]}},
 "vertices":[[0,0,0],[4000,0,0],[4000,3000,0],[0,3000,0],[0,0,2000],[4000,0,2000],
 [4000,3000,2000],[0,3000,2000]]})";
+}
+
+/// The same surfaces stated as a solid, which is not closed then.
+inline std::string open_solid_cityjson() {
+  std::string text = open_box_cityjson();
+  const auto replace = [&](std::string_view from, std::string_view by) {
+    text.replace(text.find(from), from.size(), by);
+  };
+  replace("MultiSurface", "Solid");
+  replace("[[[0,3,2,1]]", "[[[[0,3,2,1]]");
+  replace("[[4,5,6,7]]]", "[[4,5,6,7]]]]");
+  replace("[0,1,2,3,4]", "[[0,1,2,3,4]]");
+  return text;
 }
 
 }  // namespace citymesh::test

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <thread>
 
 #include "tests/integration/apps/big_city.h"
@@ -135,15 +136,21 @@ TEST(CommandLine, AnInputThatCannotBeReadIsExitCodeOne) {
   EXPECT_TRUE(std::filesystem::exists(folder / "out" / "model.obj"));
 }
 
+/// Does the report name something that is a defect, and no remark on buildings that are sound?
+bool has_defects(const nlohmann::json& report) {
+  const std::set<std::string> remarks{"C117", "C118", "C119"};
+  for (const auto& building : report.at("buildings"))
+    for (const auto& issue : building.at("issues_before"))
+      if (!remarks.contains(issue.at("code").get<std::string>())) return true;
+  return false;
+}
+
 TEST(CommandLine, ValidatePrintsTheReportToStdout) {
   const auto outcome = citymesh({"validate", kTile});
   ASSERT_LE(outcome.code, 1) << outcome.err;
   const auto report = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(report.at("process"), "validate");
-  auto defects = false;
-  for (const auto& building : report.at("buildings"))
-    defects = defects || !building.at("issues_before").empty();
-  EXPECT_EQ(outcome.code, defects ? 1 : 0);
+  EXPECT_EQ(outcome.code, has_defects(report) ? 1 : 0);
 }
 
 TEST(CommandLine, HealWritesTheCityModelAgain) {

@@ -146,10 +146,17 @@ TEST_F(Healing, ThePageShowsABuildingBeforeAndAfterOnlyWhereItChanged) {
 }
 
 TEST_F(Healing, ValidateShowsTheModelAsItCame) {
+  std::ofstream(box_) << test::open_solid_cityjson();
   const Results checked(box_, "", "validate");
   EXPECT_THAT(checked.text("picture.svg"), HasSubstr("1 building checked"));
   EXPECT_THAT(checked.text("picture.svg"), HasSubstr("defects of shells"));
   EXPECT_THAT(checked.text("report.html"), HasSubstr("citymesh-picture"));
+}
+
+TEST_F(Healing, ValidateDoesNotAskOfAMultiSurfaceThatItIsClosed) {
+  const Results checked(box_, "", "validate");
+  EXPECT_TRUE(checked.building()["issues_before"].empty());
+  EXPECT_THAT(checked.text("picture.svg"), HasSubstr("without defects 1"));
 }
 
 }  // namespace
