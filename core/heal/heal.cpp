@@ -138,12 +138,13 @@ struct Rebuild {
   std::string_view rung;
   Reconstruction reconstruct;
   bool prepared;  ///< takes what the steps of `healed` made of the input
+  bool widens;    ///< is tried again with wider tolerances
 };
 constexpr std::array kRebuilds{
-    Rebuild{"rebuilt_2_5d", rebuild_2_5d, false},
-    Rebuild{"rebuilt_3d", rebuild_3d, true},
-    Rebuild{"rebuilt_3d", rebuild_3d_triangles, true},
-    Rebuild{"wrapped", wrap, false},
+    Rebuild{"rebuilt_2_5d", rebuild_2_5d, false, true},
+    Rebuild{"rebuilt_3d", rebuild_3d, true, true},
+    Rebuild{"rebuilt_3d", rebuild_3d_triangles, true, true},
+    Rebuild{"wrapped", wrap, false, false},
 };
 
 class Ladder {
@@ -241,6 +242,7 @@ class Ladder {
   bool try_rebuilt(const Rebuild& rebuild, const Gridded& input) {
     for (const double tolerance_m : tolerances_m()) {
       if (context_.stopped()) return false;
+      if (tolerance_m > options_.snap_tolerance_m && !rebuild.widens) return false;
       StepContext step = step_context(tolerance_m);
       Shell prepared = input.shell;
       if (rebuild.prepared) prepare(prepared, step);
