@@ -321,6 +321,7 @@ class Refinement {
     std::vector<Facet> result;
     result.reserve(facets_.size());
     for (std::uint32_t f = 0; f < facets_.size(); ++f) {
+      if (options_.stop.stop_requested()) return false;
       facets_[f].fresh = false;
       if (crossing[f].empty()) {
         result.push_back(facets_[f]);

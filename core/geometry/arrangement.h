@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "core/geometry/point.h"
@@ -28,11 +29,13 @@ struct ArrangeOptions {
   std::uint32_t max_rounds = 16;
   std::uint64_t max_facets = 200'000;
   std::uint64_t max_cuts = 400'000;  ///< pairs of facets that cross, over all rounds
+  std::stop_token stop{};            ///< asked once per facet
 };
 
 /// Cuts all triangles where they cross, with exact constructions, rounds what came new to the grid
 /// and repeats until nothing crosses (iterated snap rounding, after Halperin and Packer 2002, here
-/// in space). Degenerate triangles are ignored. None: a limit was reached before that.
+/// in space). Degenerate triangles are ignored. None: a limit was reached before that, or it was
+/// stopped.
 std::optional<Arrangement> arrange(std::span<const GridPoint> points,
                                    std::span<const Triangle> triangles,
                                    const ArrangeOptions& options);

@@ -147,6 +147,9 @@ constexpr std::array kRebuilds{
     Rebuild{"wrapped", wrap, false, false},
 };
 
+/// Beyond so many faces a rebuilding rung is tried with one tolerance only.
+constexpr std::size_t kManyFaces = 5000;
+
 class Ladder {
  public:
   Ladder(const Building& building, const HealOptions& options, const DeliveryGate& gate,
@@ -242,7 +245,8 @@ class Ladder {
   bool try_rebuilt(const Rebuild& rebuild, const Gridded& input) {
     for (const double tolerance_m : tolerances_m()) {
       if (context_.stopped()) return false;
-      if (tolerance_m > options_.snap_tolerance_m && !rebuild.widens) return false;
+      const bool once = !rebuild.widens || input.shell.faces.size() > kManyFaces;
+      if (once && tolerance_m > options_.snap_tolerance_m) return false;
       StepContext step = step_context(tolerance_m);
       Shell prepared = input.shell;
       if (rebuild.prepared) prepare(prepared, step);

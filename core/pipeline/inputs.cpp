@@ -249,9 +249,6 @@ Result<Inputs> read_inputs(std::string_view canonical_json) {
   inputs.max_displacement_m = given.value("max_displacement_m", inputs.max_displacement_m);
   inputs.max_hole_area_m2 = given.value("max_hole_area_m2", inputs.max_hole_area_m2);
   inputs.merge_parts = given.value("parts", "keep") == "merge";
-  if (inputs.merge_parts)
-    return fail(ErrorCode::Unimplemented,
-                "input `parts` is \"merge\": merging is not built, expected \"keep\"");
   if (given.value("unite_neighbours", false))
     return fail(ErrorCode::Unimplemented,
                 "input `unite_neighbours` is true: uniting is not built, expected false");

@@ -11,9 +11,12 @@
 namespace citymesh {
 namespace {
 
-constexpr double kMinTolerance_m = 0.0015;  ///< above the height that the gates ask of triangles
-constexpr double kGap_m = 0.005;            ///< between parts that only touch
-constexpr double kMaxLost = 1.0 / 3;        ///< of the area of the input, outside of the result
+constexpr double kMinTolerance_m = 0.0015;     ///< above the height that the gates ask of triangles
+constexpr std::size_t kMaxTriangles = 20'000;  ///< of the input; work limits
+constexpr std::uint64_t kMaxFacets = 60'000;
+constexpr std::uint64_t kMaxCuts = 30'000;
+constexpr double kGap_m = 0.005;      ///< between parts that only touch
+constexpr double kMaxLost = 1.0 / 3;  ///< of the area of the input, outside of the result
 
 bool is_inside(double winding) { return std::abs(winding) >= 0.5; }
 
@@ -68,8 +71,12 @@ std::optional<Boundary> solid_of(const Shell& input, const ReconstructOptions& o
       triangles.insert(triangles.end(), pieces->begin(), pieces->end());
       face_of.resize(triangles.size(), f);
     }
+  if (triangles.size() > kMaxTriangles) return {};
 
   ArrangeOptions limits;
+  limits.max_facets = kMaxFacets;
+  limits.max_cuts = kMaxCuts;
+  limits.stop = context.stop;
   limits.tolerance_m = std::max(options.tolerance_m, kMinTolerance_m);
   auto arrangement = arrange(input.points, triangles, limits);
   if (!arrangement || context.stopped()) return {};

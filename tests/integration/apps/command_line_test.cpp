@@ -84,7 +84,7 @@ TEST(CommandLine, WhatCannotRunIsExitCodeTwoAndSaysWhy) {
   refused({"validate", "missing.gml"}, "missing.gml");
   refused({"heal", kTile}, "--output");
   refused({"heal", "missing.gml", "--output", out}, "missing.gml");
-  refused({"heal", kTile, "--output", out, "--set", "parts=merge"}, "merge");
+  refused({"heal", kTile, "--output", out, "--set", "parts=split"}, "merge");
   refused({"serve", "--data", "missing"}, "missing");
   refused({"serve", "--data", folder.path().string(), "--listen", "here"}, "HOST:PORT");
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));

@@ -93,8 +93,8 @@ TEST_F(RestOverSocket, HealIsAProcessWhoseModelIsFetched) {
   EXPECT_EQ(file.headers.at("content-type"), "application/city+json");
   EXPECT_EQ(file.body, R"({"type":"CityJSON"})");
   const auto refused =
-      send(request("POST", "/processes/heal/execution", R"({"inputs":{"parts":"merge"}})"));
-  EXPECT_EQ(refused.status, 501);
+      send(request("POST", "/processes/heal/execution", R"({"inputs":{"parts":"split"}})"));
+  EXPECT_EQ(refused.status, 400);
   EXPECT_THAT(refused.body, HasSubstr("`parts`"));
 }
 

@@ -118,8 +118,9 @@ TEST_F(RpcServerTest, HealIsTakenWithItsLimits) {
   const auto [status, job] = submit("heal", R"({"max_hole_area_m2":25,"formats":["citygml3"]})");
   ASSERT_TRUE(status.ok()) << status.error_message();
   EXPECT_EQ(job.process(), "heal");
-  EXPECT_EQ(submit("heal", R"({"parts":"merge"})").first.error_code(),
-            grpc::StatusCode::UNIMPLEMENTED);
+  EXPECT_TRUE(submit("heal", R"({"parts":"merge"})").first.ok());
+  EXPECT_EQ(submit("heal", R"({"parts":"split"})").first.error_code(),
+            grpc::StatusCode::INVALID_ARGUMENT);
   EXPECT_EQ(submit("heal", R"({"max_hole_area_m2":-1})").first.error_code(),
             grpc::StatusCode::INVALID_ARGUMENT);
 }

@@ -156,7 +156,6 @@ TEST(Inputs, AnUnknownProcessIsNotFoundAndTheOthersAreNamed) {
 
 TEST(Inputs, WhatIsNotBuiltIsSaidSo) {
   EXPECT_EQ(refused(R"({"unite_neighbours":true})").code, ErrorCode::Unimplemented);
-  EXPECT_EQ(refused(R"({"parts":"merge"})").code, ErrorCode::Unimplemented);
 }
 
 }  // namespace
