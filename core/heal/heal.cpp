@@ -199,14 +199,17 @@ class Ladder {
   bool try_as_is(const Gridded& input) {
     Shell shell = input.shell;
     type_faces(shell);
+    group_solids(shell);
     const std::vector<Issue> refused = gate_(shell);
     for (const Issue& issue : refused)
       if (std::none_of(result_.issues.begin(), result_.issues.end(),
                        [&](const Issue& known) { return known.code == issue.code; }))
         result_.issues.push_back(issue);
-    if (!refused.empty()) return false;
+    StepContext step = step_context(options_.snap_tolerance_m);
+    if (!refused.empty() || !even_out(shell, step)) return false;
     result_.max_displacement_m = input.max_displacement_m;
-    return deliver("as_is", std::move(shell));
+    result_.repairs = std::move(step.repairs);
+    return deliver(result_.repairs.empty() ? "as_is" : "healed", std::move(shell));
   }
 
   bool try_healed(const Gridded& input) {
@@ -230,9 +233,8 @@ class Ladder {
         prepare(shell, step);
         drop_double_triangles(shell, step);
         if (openings) openings->give_back(shell);
-        type_faces(shell);
         if (shell.faces.empty() || step.max_displacement_m > options_.max_displacement_m) continue;
-        if (!gate_(shell).empty()) continue;
+        if (!fits(shell, step)) continue;
         result_.max_displacement_m = std::max(input.max_displacement_m, step.max_displacement_m);
         result_.repairs = std::move(step.repairs);
         result_.deviation = deviation_between(input.shell, shell);
@@ -252,8 +254,7 @@ class Ladder {
       if (rebuild.prepared) prepare(prepared, step);
       std::optional<Shell> shell = rebuild.reconstruct(prepared, {tolerance_m}, context_);
       if (!shell || shell->faces.empty()) continue;
-      type_faces(*shell);
-      if (!gate_(*shell).empty()) continue;
+      if (!fits(*shell, step)) continue;
       result_.deviation = deviation_between(input.shell, *shell);
       result_.max_displacement_m = input.max_displacement_m;
       result_.repairs = std::move(step.repairs);
@@ -262,6 +263,31 @@ class Ladder {
       return deliver(std::string(rebuild.rung), std::move(*shell));
     }
     return false;
+  }
+
+  /// Whether the shell can be delivered, in the form that it gets here.
+  bool fits(Shell& shell, StepContext& step) {
+    type_faces(shell);
+    group_solids(shell);
+    return gate_(shell).empty() && even_out(shell, step);
+  }
+
+  /// Cuts the faces of a shell that passes the gate so that others find all of them plane. Of
+  /// triangles nothing else can be found.
+  bool even_out(Shell& shell, StepContext& step) {
+    const double tolerance_m = options_.planarity_tolerance_m;
+    Shell cut = shell;
+    const std::vector<GridPoint> places = split_uneven_faces(cut, tolerance_m, false);
+    if (places.empty()) return true;
+    split_uneven_faces(cut, tolerance_m, true);
+    if (!gate_(cut).empty()) {
+      cut = shell;
+      split_uneven_faces(cut, tolerance_m, true);
+      if (!gate_(cut).empty()) return false;
+    }
+    shell = std::move(cut);
+    for (const GridPoint& place : places) step.note("face_split", place);
+    return true;
   }
 
   StepContext step_context(double tolerance_m) const {
@@ -287,7 +313,8 @@ class Ladder {
         input.shell, footprint_only, number_attribute(building_.attributes, "measuredHeight"),
         [&](Shell& shell) {
           if (context_.stopped()) return true;
-          if (!gate_(shell).empty()) return false;
+          StepContext step = step_context(options_.snap_tolerance_m);
+          if (!fits(shell, step)) return false;
           result_.deviation = deviation_between(input.shell, shell);
           result_.repairs = {{"replaced_by_block", building_.gml_id, result_.deviation.max_m}};
           return deliver("lod1_block", std::move(shell));

@@ -44,8 +44,9 @@ struct Healed {
 
 /// Climbs the ladder until the gate holds: the geometry as it is after gridding; healed (snapping,
 /// ring cleaning, T-junctions, duplicate faces, orientation, planar holes) with growing tolerances;
-/// the LoD1 block of the contract. Takes the first level of detail of `lod` that the building has.
-/// Never throws for bad geometry.
+/// the LoD1 block of the contract. On every rung faces that are not plane are cut into plane
+/// pieces. Takes the first level of detail of `lod` that the building has. Never throws for bad
+/// geometry.
 Healed heal(const Building& building, std::span<const Lod> lod, const HealOptions& options,
             const DeliveryGate& gate, const RunContext& context);
 

@@ -62,6 +62,16 @@ void close_holes(Shell& shell, StepContext& context);
 /// goes, of doubles one stays. Faces that lose triangles fall apart into the rest.
 void drop_double_triangles(Shell& shell, StepContext& context);
 
+/// Cuts faces that readers may find not plane, or crossing themselves where they look along another
+/// direction than citymesh, into plane pieces or into triangles. They keep type and source. Returns
+/// the first corner of each face that it cut.
+std::vector<GridPoint> split_uneven_faces(Shell& shell, double planarity_tolerance_m,
+                                          bool into_triangles);
+
+/// Where the shell has several exteriors puts the faces of each together, those of its cavities
+/// behind them: what solids are written of.
+void group_solids(Shell& shell);
+
 /// Gives faces without a type one by their normal: up a roof, down a ground, else a wall.
 void type_faces(Shell& shell);
 

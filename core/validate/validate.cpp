@@ -182,6 +182,16 @@ std::vector<Issue> validate(const Shell& shell, const ValidateOptions& options) 
   return findings.take();
 }
 
+std::vector<bool> sound_faces(const Shell& shell, const ValidateOptions& options) {
+  Boundary boundary;
+  boundary.points = shell.points;
+  for (const Face& face : shell.faces) {
+    TestedPolygon& polygon = boundary.polygons.emplace_back();
+    polygon.rings = face.rings;
+  }
+  return sound_polygons(boundary, options);
+}
+
 std::vector<Issue> validate_parts(std::span<const SolidBody* const> solids) {
   Findings findings;
   check_overlaps(solids, 601, findings);

@@ -38,6 +38,10 @@ Validated validate(const Building& building, const Geometry& geometry,
 /// A gridded boundary as one solid, faces of cavities as its inner shells.
 std::vector<Issue> validate(const Shell& shell, const ValidateOptions& options);
 
+/// Per face of a shell whose points are distinct: whether nothing is wrong with it by itself (1xx,
+/// 2xx).
+std::vector<bool> sound_faces(const Shell& shell, const ValidateOptions& options);
+
 /// 601: pairs of solids of one building whose insides overlap.
 std::vector<Issue> validate_parts(std::span<const SolidBody* const> solids);
 

@@ -45,7 +45,8 @@ std::vector<SolidFaces> solids_of(const TriangleMesh& mesh) {
     if (cavity && !solids.empty()) {
       solids.back().interiors = split_shells(mesh, {begin, end});
     } else {
-      solids.push_back({{begin, end}, {}});
+      for (const FaceRange& exterior : split_shells(mesh, {begin, end}))
+        solids.push_back({exterior, {}});
     }
     begin = end;
   }

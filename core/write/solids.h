@@ -18,7 +18,7 @@ struct SolidFaces {
 };
 
 /// The solids of a mesh without changing the order of its faces: faces of cavities belong to the
-/// exterior before them; a new exterior begins where faces follow those of cavities. Cavities whose
+/// exterior before them. Exteriors, and cavities, that share no point are several, but those whose
 /// faces are mixed stay one shell.
 std::vector<SolidFaces> solids_of(const TriangleMesh& mesh);
 

@@ -3,8 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
 #include "core/gates/gates.h"
 #include "core/mesh/mesh.h"
+#include "core/validate/validate.h"
 #include "tests/support/shapes.h"
 
 namespace citymesh {
@@ -13,6 +18,7 @@ namespace {
 using testing::block;
 using ::testing::Contains;
 using testing::Draw;
+using ::testing::ElementsAre;
 using ::testing::Field;
 using ::testing::IsEmpty;
 using testing::rectangle;
@@ -316,6 +322,53 @@ TEST(Heal, HealingWhatWasHealedChangesNothing) {
   const auto twice = heal(again.done());
   EXPECT_EQ(twice.rung, "as_is");
   EXPECT_DOUBLE_EQ(volume_m3(twice), volume_m3(healed));
+}
+
+TEST(Heal, APolygonThatIsNotPlaneGoesOutInPlanePieces) {
+  // A roof with one corner 4 cm below the plane of the others: closed, but val3dity's 203.
+  Draw draw;
+  auto roof = rectangle(0, 0, 10, 8, 6);
+  roof[2].z -= 0.04;
+  auto ground = rectangle(0, 0, 10, 8);
+  std::reverse(ground.begin(), ground.end());
+  draw.face(SurfaceType::RoofSurface, {roof}).face(SurfaceType::GroundSurface, {ground});
+  const auto base = rectangle(0, 0, 10, 8);
+  for (std::size_t i = 0; i < 4; ++i)
+    draw.face(SurfaceType::WallSurface, {{base[i], base[(i + 1) % 4], roof[(i + 1) % 4], roof[i]}});
+  const auto healed = heal(draw.done());
+  EXPECT_EQ(healed.rung, "healed");
+  EXPECT_THAT(healed.issues, Contains(Field(&Issue::code, 203)));
+  EXPECT_THAT(healed.repairs, ElementsAre(Field(&Repair::kind, "face_split")));
+  EXPECT_EQ(count(healed, SurfaceType::RoofSurface), 2u);
+  EXPECT_EQ(count(healed, SurfaceType::WallSurface), 4u);
+  EXPECT_EQ(healed.deviation.max_m, 0);
+  EXPECT_THAT(validate(healed.shell, ValidateOptions{}), IsEmpty());
+}
+
+TEST(Heal, SolidsThatDoNotTouchComeOneAfterTheOther) {
+  const Building one = block(0, 0, 4, 4, 3).done(), other = block(10, 0, 14, 4, 3).done();
+  Building both = one;
+  Geometry& geometry = both.geometries[0];
+  const Geometry& more = other.geometries[0];
+  const auto first = static_cast<std::uint32_t>(geometry.points.size());
+  geometry.points.insert(geometry.points.end(), more.points.begin(), more.points.end());
+  const std::vector<Polygon> polygons = std::exchange(geometry.polygons, {});
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    geometry.polygons.push_back(polygons[i]);
+    geometry.polygons.push_back(more.polygons[i]);
+    for (Ring& ring : geometry.polygons.back().rings)
+      for (std::uint32_t& corner : ring) corner += first;
+  }
+  for (Solid& solid : geometry.solids) {
+    solid.exterior.resize(geometry.polygons.size());
+    std::iota(solid.exterior.begin(), solid.exterior.end(), 0u);
+  }
+  const auto healed = heal(both);
+  ASSERT_EQ(healed.shell.faces.size(), 12u);
+  for (std::size_t f = 0; f < 12; ++f) {
+    const bool east = to_metres(healed.shell.points[healed.shell.faces[f].rings[0][0]]).x > 5;
+    EXPECT_EQ(east, f >= 6) << "face " << f;
+  }
 }
 
 }  // namespace

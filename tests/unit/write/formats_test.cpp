@@ -432,6 +432,29 @@ TEST(CityJson, BeginsANewSolidWhereAnExteriorFollowsACavity) {
   EXPECT_EQ(geometry["semantics"]["values"], nlohmann::json::parse("[[[0],[1]],[[2,3,4,5]]]"));
 }
 
+TEST(CityJson, ExteriorsThatShareNoPointAreSolidsOfTheirOwn) {
+  auto building = test::building("b_1", test::box(1, 1, 1));
+  TriangleMesh& mesh = building.bodies[0].mesh;
+  const auto count = static_cast<std::uint32_t>(mesh.points.size());
+  const std::vector<Face> faces = mesh.faces;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    GridPoint moved = mesh.points[i];
+    moved.x += 50'000;
+    mesh.points.push_back(moved);
+  }
+  for (Face face : faces) {
+    for (Ring& ring : face.rings)
+      for (std::uint32_t& corner : ring) corner += count;
+    mesh.faces.push_back(std::move(face));
+  }
+  const auto json = cityjson_of({building});
+  const auto& geometry = json["CityObjects"]["b_1"]["geometry"][0];
+  EXPECT_EQ(geometry["type"], "MultiSolid");
+  ASSERT_EQ(geometry["boundaries"].size(), 2u);
+  EXPECT_EQ(geometry["boundaries"][0][0].size(), 6u);
+  EXPECT_EQ(geometry["boundaries"][1][0].size(), 6u);
+}
+
 TEST(CityJson, KeepsAddresses) {
   auto building = test::building("b_1", test::box(1, 1, 1));
   building.addresses = {{"Main \"Street\"", "12a", "", "12345", "Berlin", "", "Germany"}};
