@@ -143,12 +143,11 @@ struct Rebuild {
 constexpr std::array kRebuilds{
     Rebuild{"rebuilt_2_5d", rebuild_2_5d, false, true},
     Rebuild{"rebuilt_3d", rebuild_3d, true, true},
-    Rebuild{"rebuilt_3d", rebuild_3d_triangles, true, true},
     Rebuild{"wrapped", wrap, false, false},
 };
 
 /// Beyond so many faces a rebuilding rung is tried with one tolerance only.
-constexpr std::size_t kManyFaces = 5000;
+constexpr std::size_t kManyFaces = 400;
 
 class Ladder {
  public:

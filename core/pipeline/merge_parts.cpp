@@ -39,15 +39,8 @@ void merge_parts(const Building& building, BuildingReport& report, std::vector<B
     if (is_part(body)) append(all, body.mesh);
 
   RoundTripGate gate(formats);
-  const auto united = [&] {
-    for (const Reconstruction rebuild : {rebuild_3d, rebuild_3d_triangles}) {
-      if (context.stopped()) return false;
-      const auto shell = rebuild(all, {}, context);
-      if (shell && gate(*shell).empty()) return true;
-    }
-    return false;
-  }();
-  if (!united) {
+  const auto shell = rebuild_3d(all, {}, context);
+  if (!shell || !gate(*shell).empty()) {
     report.issues_after.push_back({issue_code::kPartsNotMerged, report.gml_id, 0});
     return;
   }

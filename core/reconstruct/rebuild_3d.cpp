@@ -1,9 +1,13 @@
 #include "core/reconstruct/rebuild_3d.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/geometry/arrangement.h"
+#include "core/geometry/box_tree.h"
+#include "core/geometry/measure.h"
+#include "core/geometry/predicates.h"
 #include "core/geometry/triangulation.h"
 #include "core/reconstruct/boundary.h"
 #include "core/reconstruct/close_chain.h"
@@ -14,7 +18,7 @@ namespace {
 constexpr double kMinTolerance_m = 0.0015;     ///< above the height that the gates ask of triangles
 constexpr std::size_t kMaxTriangles = 20'000;  ///< of the input; work limits
 constexpr std::uint64_t kMaxFacets = 60'000;
-constexpr std::uint64_t kMaxCuts = 30'000;
+constexpr std::uint64_t kMaxCuts = 8'000;
 constexpr double kGap_m = 0.005;      ///< between parts that only touch
 constexpr double kMaxLost = 1.0 / 3;  ///< of the area of the input, outside of the result
 
@@ -60,6 +64,29 @@ std::optional<Arrangement> closed(Arrangement first, std::uint32_t gap,
     covers = std::move(resolved);
   }
   return second;
+}
+
+/// Whether triangles of the faces meet elsewhere than in common corners and edges.
+bool is_crossing(const Shell& shell) {
+  std::vector<Triangle> triangles;
+  for (const Face& face : shell.faces) {
+    const auto pieces = triangulate(shell.points, face.rings);
+    if (!pieces) return true;
+    triangles.insert(triangles.end(), pieces->begin(), pieces->end());
+  }
+  std::vector<GridBox> boxes;
+  for (const Triangle& t : triangles) boxes.push_back(box_of(shell.points, t));
+  const BoxTree tree(boxes);
+  const auto corners = [&](std::uint32_t f) {
+    const Triangle& t = triangles[f];
+    return std::array<GridPoint, 3>{shell.points[t[0]], shell.points[t[1]], shell.points[t[2]]};
+  };
+  bool crossing = false;
+  for (std::uint32_t f = 0; f < triangles.size() && !crossing; ++f)
+    tree.for_each_meeting(boxes[f], [&](std::uint32_t g) {
+      crossing = crossing || (g > f && triangles_clash(corners(f), corners(g)));
+    });
+  return crossing;
 }
 
 std::optional<Boundary> solid_of(const Shell& input, const ReconstructOptions& options,
@@ -115,13 +142,10 @@ std::optional<Boundary> solid_of(const Shell& input, const ReconstructOptions& o
 std::optional<Shell> rebuild_3d(const Shell& input, const ReconstructOptions& options,
                                 const RunContext& context) {
   const auto boundary = solid_of(input, options, context);
-  return boundary ? std::optional(faces_of(*boundary, input)) : std::nullopt;
-}
-
-std::optional<Shell> rebuild_3d_triangles(const Shell& input, const ReconstructOptions& options,
-                                          const RunContext& context) {
-  const auto boundary = solid_of(input, options, context);
-  return boundary ? std::optional(triangles_of(*boundary, input)) : std::nullopt;
+  if (!boundary) return {};
+  // Polygons that were cut and rounded are not always plane enough to be triangulated anew.
+  Shell polygons = faces_of(*boundary, input);
+  return is_crossing(polygons) ? triangles_of(*boundary, input) : std::move(polygons);
 }
 
 }  // namespace citymesh

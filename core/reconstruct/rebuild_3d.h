@@ -10,9 +10,4 @@ namespace citymesh {
 std::optional<Shell> rebuild_3d(const Shell& input, const ReconstructOptions& options,
                                 const RunContext& context);
 
-/// The same in triangles: polygons that were cut and rounded are not always plane enough to be
-/// triangulated anew without crossing each other.
-std::optional<Shell> rebuild_3d_triangles(const Shell& input, const ReconstructOptions& options,
-                                          const RunContext& context);
-
 }  // namespace citymesh
