@@ -119,7 +119,11 @@ std::vector<Triangle> triangles_of(const Shell& shell, bool with_added = true) {
 }
 
 /// Two-sided distance; faces that close holes are no deviation, but what they cover is found there.
-Deviation deviation_between(const Shell& input, const Shell& result) {
+Deviation deviation_between(const Shell& raw, const Shell& result) {
+  // A face that only repeats a corner has no triangles, but is no gap either.
+  Shell input = raw;
+  StepContext unnoted;
+  clean_rings(input, unnoted);
   const std::vector<Triangle> before = triangles_of(input), after = triangles_of(result);
   return two_sided(deviation_to(input.points, before, DistanceField(result.points, after)),
                    deviation_to(result.points, triangles_of(result, false),
@@ -197,15 +201,14 @@ class Ladder {
  private:
   bool try_as_is(const Gridded& input) {
     Shell shell = input.shell;
-    type_faces(shell);
-    group_solids(shell);
-    const std::vector<Issue> refused = gate_(shell);
-    for (const Issue& issue : refused)
-      if (std::none_of(result_.issues.begin(), result_.issues.end(),
+    StepContext step = step_context(options_.snap_tolerance_m);
+    const std::vector<Issue> refused = fits(shell, step);
+    for (const Issue& issue : refused)  // of what was cut they would say nothing of the input
+      if (step.repairs.empty() &&
+          std::none_of(result_.issues.begin(), result_.issues.end(),
                        [&](const Issue& known) { return known.code == issue.code; }))
         result_.issues.push_back(issue);
-    StepContext step = step_context(options_.snap_tolerance_m);
-    if (!refused.empty() || !even_out(shell, step)) return false;
+    if (!refused.empty()) return false;
     result_.max_displacement_m = input.max_displacement_m;
     result_.repairs = std::move(step.repairs);
     return deliver(result_.repairs.empty() ? "as_is" : "healed", std::move(shell));
@@ -233,7 +236,7 @@ class Ladder {
         drop_double_triangles(shell, step);
         if (openings) openings->give_back(shell);
         if (shell.faces.empty() || step.max_displacement_m > options_.max_displacement_m) continue;
-        if (!fits(shell, step)) continue;
+        if (!fits(shell, step).empty()) continue;
         result_.max_displacement_m = std::max(input.max_displacement_m, step.max_displacement_m);
         result_.repairs = std::move(step.repairs);
         result_.deviation = deviation_between(input.shell, shell);
@@ -253,7 +256,7 @@ class Ladder {
       if (rebuild.prepared) prepare(prepared, step);
       std::optional<Shell> shell = rebuild.reconstruct(prepared, {tolerance_m}, context_);
       if (!shell || shell->faces.empty()) continue;
-      if (!fits(*shell, step)) continue;
+      if (!fits(*shell, step).empty()) continue;
       result_.deviation = deviation_between(input.shell, *shell);
       result_.max_displacement_m = input.max_displacement_m;
       result_.repairs = std::move(step.repairs);
@@ -265,28 +268,11 @@ class Ladder {
   }
 
   /// Whether the shell can be delivered, in the form that it gets here.
-  bool fits(Shell& shell, StepContext& step) {
-    type_faces(shell);
-    group_solids(shell);
-    return gate_(shell).empty() && even_out(shell, step);
-  }
-
-  /// Cuts the faces of a shell that passes the gate so that others find all of them plane. Of
-  /// triangles nothing else can be found.
-  bool even_out(Shell& shell, StepContext& step) {
-    const double tolerance_m = options_.planarity_tolerance_m;
-    Shell cut = shell;
-    const std::vector<GridPoint> places = split_uneven_faces(cut, tolerance_m, false);
-    if (places.empty()) return true;
-    split_uneven_faces(cut, tolerance_m, true);
-    if (!gate_(cut).empty()) {
-      cut = shell;
-      split_uneven_faces(cut, tolerance_m, true);
-      if (!gate_(cut).empty()) return false;
-    }
-    shell = std::move(cut);
-    for (const GridPoint& place : places) step.note("face_split", place);
-    return true;
+  std::vector<Issue> fits(Shell& shell, StepContext& step) {
+    std::vector<GridPoint> cuts;
+    std::vector<Issue> refused = make_fit(shell, options_.planarity_tolerance_m, gate_, cuts);
+    for (const GridPoint& cut : cuts) step.note("face_split", cut);
+    return refused;
   }
 
   StepContext step_context(double tolerance_m) const {
@@ -313,7 +299,7 @@ class Ladder {
         [&](Shell& shell) {
           if (context_.stopped()) return true;
           StepContext step = step_context(options_.snap_tolerance_m);
-          if (!fits(shell, step)) return false;
+          if (!fits(shell, step).empty()) return false;
           result_.deviation = deviation_between(input.shell, shell);
           result_.repairs = {{"replaced_by_block", building_.gml_id, result_.deviation.max_m}};
           return deliver("lod1_block", std::move(shell));

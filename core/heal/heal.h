@@ -42,6 +42,12 @@ struct Healed {
   std::optional<double> volume_before_m3{};  ///< where the input is closed
 };
 
+/// The last step of every rung: faces get a type and fall into solids; what the gate takes is cut
+/// where others would not find its faces plane, at `cuts`, and judged again. Returns what the gate
+/// holds against it: nothing when it is fit.
+std::vector<Issue> make_fit(Shell& shell, double planarity_tolerance_m, const DeliveryGate& gate,
+                            std::vector<GridPoint>& cuts);
+
 /// Climbs the ladder until the gate holds: the geometry as it is after gridding; healed (snapping,
 /// ring cleaning, T-junctions, duplicate faces, orientation, planar holes) with growing tolerances;
 /// the LoD1 block of the contract. On every rung faces that are not plane are cut into plane

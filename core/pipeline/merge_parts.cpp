@@ -1,9 +1,11 @@
 #include "core/pipeline/merge_parts.h"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "core/geometry/measure.h"
+#include "core/heal/heal.h"
 #include "core/pipeline/round_trip_gate.h"
 #include "core/reconstruct/rebuild_3d.h"
 
@@ -27,8 +29,8 @@ void append(Shell& shell, const TriangleMesh& mesh) {
 }  // namespace
 
 void merge_parts(const Building& building, BuildingReport& report, std::vector<Body>& bodies,
-                 std::vector<std::uint64_t>& fingerprints, const std::vector<OpenFormat>& formats,
-                 const RunContext& context) {
+                 std::vector<std::uint64_t>& fingerprints, const Inputs& inputs,
+                 const std::vector<OpenFormat>& formats, const RunContext& context) {
   const auto is_part = [](const Body& body) {
     return body.kind != ObjectKind::BuildingInstallation;
   };
@@ -39,8 +41,9 @@ void merge_parts(const Building& building, BuildingReport& report, std::vector<B
     if (is_part(body)) append(all, body.mesh);
 
   RoundTripGate gate(formats);
-  const auto shell = rebuild_3d(all, {}, context);
-  if (!shell || !gate(*shell).empty()) {
+  auto shell = rebuild_3d(all, {}, context);
+  std::vector<GridPoint> cuts;
+  if (!shell || !make_fit(*shell, inputs.planarity_tolerance_m, std::ref(gate), cuts).empty()) {
     report.issues_after.push_back({issue_code::kPartsNotMerged, report.gml_id, 0});
     return;
   }

@@ -15,7 +15,7 @@ namespace citymesh {
 /// Installations stay bodies of their own. Where the union passes no gate, the bodies stay as they
 /// are and the report says so (C120).
 void merge_parts(const Building& building, BuildingReport& report, std::vector<Body>& bodies,
-                 std::vector<std::uint64_t>& fingerprints, const std::vector<OpenFormat>& formats,
-                 const RunContext& context);
+                 std::vector<std::uint64_t>& fingerprints, const Inputs& inputs,
+                 const std::vector<OpenFormat>& formats, const RunContext& context);
 
 }  // namespace citymesh

@@ -199,7 +199,7 @@ ProcessedBuilding process_building(const NamedBuilding& named, const Inputs& inp
   }
   report.reason.clear();
   if (inputs.merge_parts)
-    merge_parts(building, report, bodies, processed.fingerprints, formats, context);
+    merge_parts(building, report, bodies, processed.fingerprints, inputs, formats, context);
   processed.bodies = BuildingBodies{building.gml_id, report.rung, building.attributes,
                                     building.addresses, std::move(bodies)};
   return processed;

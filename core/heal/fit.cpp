@@ -1,0 +1,29 @@
+#include <utility>
+
+#include "core/heal/heal.h"
+#include "core/heal/steps.h"
+
+namespace citymesh {
+
+std::vector<Issue> make_fit(Shell& shell, double planarity_tolerance_m, const DeliveryGate& gate,
+                            std::vector<GridPoint>& cuts) {
+  type_faces(shell);
+  group_solids(shell);
+  std::vector<Issue> refused = gate(shell);
+  if (!refused.empty()) return refused;
+  Shell cut = shell;
+  cuts = split_uneven_faces(cut, planarity_tolerance_m, false);
+  if (cuts.empty()) return {};
+  // Pieces may be uneven in turn, and the cuts of neighbours may not go together: then triangles,
+  // of which nothing else can be found.
+  split_uneven_faces(cut, planarity_tolerance_m, true);
+  if (!gate(cut).empty()) {
+    cut = shell;
+    split_uneven_faces(cut, planarity_tolerance_m, true);
+    refused = gate(cut);
+  }
+  if (refused.empty()) shell = std::move(cut);
+  return refused;
+}
+
+}  // namespace citymesh
