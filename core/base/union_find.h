@@ -14,6 +14,8 @@ class UnionFind {
     std::iota(parent_.begin(), parent_.end(), 0u);
   }
 
+  std::size_t size() const { return parent_.size(); }
+
   std::uint32_t root(std::uint32_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;

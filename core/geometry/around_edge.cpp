@@ -1,7 +1,6 @@
 #include "core/geometry/around_edge.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "core/geometry/predicates.h"
 
@@ -29,20 +28,6 @@ void sort_around(std::span<const GridPoint> points, std::uint32_t a, std::uint32
     const int hs = half(s.apex), ht = half(t.apex);
     return hs != ht ? hs < ht : turn(s.apex, t.apex) > 0;
   });
-}
-
-IndexSets::IndexSets(std::size_t size) : parent_(size) {
-  std::iota(parent_.begin(), parent_.end(), 0u);
-}
-
-std::uint32_t IndexSets::root(std::uint32_t i) {
-  while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-  return i;
-}
-
-void IndexSets::join(std::uint32_t a, std::uint32_t b) {
-  a = root(a), b = root(b);
-  if (a != b) parent_[std::max(a, b)] = std::min(a, b);
 }
 
 }  // namespace citymesh

@@ -28,16 +28,4 @@ EdgeFans edge_fans(std::span<const Triangle> triangles);
 void sort_around(std::span<const GridPoint> points, std::uint32_t a, std::uint32_t b,
                  std::vector<EdgeFacet>& fan);
 
-/// Union of indices.
-class IndexSets {
- public:
-  explicit IndexSets(std::size_t size);
-  std::size_t size() const { return parent_.size(); }
-  std::uint32_t root(std::uint32_t i);  ///< the lowest index of the set
-  void join(std::uint32_t a, std::uint32_t b);
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 }  // namespace citymesh

@@ -3,6 +3,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/base/union_find.h"
 #include "core/geometry/around_edge.h"
 #include "core/geometry/arrangement.h"
 #include "core/geometry/predicates.h"
@@ -224,7 +225,7 @@ class Cells {
 
   const Arrangement& arrangement_;
   std::vector<double> net_;  ///< weight of each facet along its own orientation
-  IndexSets sides_, facets_;
+  UnionFind sides_, facets_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/base/union_find.h"
 #include "core/geometry/around_edge.h"
 #include "core/geometry/triangulation.h"
 #include "core/reconstruct/boundary.h"
@@ -16,8 +17,8 @@ double length(const Point3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * 
 double dot(const Point3& a, const Point3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 /// Triangles of one parent, connected across edges that only two triangles share.
-std::map<std::uint32_t, std::vector<std::uint32_t>> regions_of(const Boundary& boundary) {
-  IndexSets sets(boundary.triangles.size());
+std::map<std::uint32_t, std::vector<std::uint32_t>> regions_of(const SolidBoundary& boundary) {
+  UnionFind sets(boundary.triangles.size());
   for (const auto& [edge, fan] : edge_fans(boundary.triangles))
     if (fan.size() == 2 && boundary.parents[fan[0].facet] == boundary.parents[fan[1].facet])
       sets.join(fan[0].facet, fan[1].facet);
@@ -27,7 +28,8 @@ std::map<std::uint32_t, std::vector<std::uint32_t>> regions_of(const Boundary& b
 }
 
 /// The outline of a region as loops that walk as its triangles do; empty when it touches itself.
-std::vector<Ring> loops_of(const Boundary& boundary, const std::vector<std::uint32_t>& region) {
+std::vector<Ring> loops_of(const SolidBoundary& boundary,
+                           const std::vector<std::uint32_t>& region) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> walked;
   for (const std::uint32_t f : region)
     for (std::size_t i = 0; i < 3; ++i)
@@ -49,7 +51,8 @@ std::vector<Ring> loops_of(const Boundary& boundary, const std::vector<std::uint
 }
 
 /// The polygon of a region; none when it is not one plane polygon.
-std::vector<Ring> polygon_of(const Boundary& boundary, const std::vector<std::uint32_t>& region) {
+std::vector<Ring> polygon_of(const SolidBoundary& boundary,
+                             const std::vector<std::uint32_t>& region) {
   Point3 normal;
   for (const std::uint32_t f : region) {
     const Triangle& t = boundary.triangles[f];
@@ -90,7 +93,7 @@ std::vector<Ring> polygon_of(const Boundary& boundary, const std::vector<std::ui
 /// Collects faces that continue those of the input.
 class Continued {
  public:
-  Continued(const Boundary& boundary, const Shell& input) : input_(input) {
+  Continued(const SolidBoundary& boundary, const Shell& input) : input_(input) {
     shell_.points = boundary.points;
     shell_.surface_ids = input.surface_ids;
   }
@@ -118,7 +121,7 @@ class Continued {
 
 }  // namespace
 
-Shell faces_of(const Boundary& boundary, const Shell& input) {
+Shell faces_of(const SolidBoundary& boundary, const Shell& input) {
   Continued shell(boundary, input);
   for (const auto& [root, region] : regions_of(boundary)) {
     std::vector<Ring> polygon = polygon_of(boundary, region);
@@ -131,7 +134,7 @@ Shell faces_of(const Boundary& boundary, const Shell& input) {
   return shell.take();
 }
 
-Shell triangles_of(const Boundary& boundary, const Shell& input) {
+Shell triangles_of(const SolidBoundary& boundary, const Shell& input) {
   Continued shell(boundary, input);
   for (std::size_t f = 0; f < boundary.triangles.size(); ++f)
     shell.add_triangle(boundary.triangles[f], boundary.parents[f]);

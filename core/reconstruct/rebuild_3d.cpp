@@ -89,8 +89,8 @@ bool is_crossing(const Shell& shell) {
   return crossing;
 }
 
-std::optional<Boundary> solid_of(const Shell& input, const ReconstructOptions& options,
-                                 const RunContext& context) {
+std::optional<SolidBoundary> solid_of(const Shell& input, const ReconstructOptions& options,
+                                      const RunContext& context) {
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> face_of;
   for (std::uint32_t f = 0; f < input.faces.size(); ++f)
@@ -115,7 +115,7 @@ std::optional<Boundary> solid_of(const Shell& input, const ReconstructOptions& o
   const std::vector<std::int8_t> weights(face_of.size(), 1);
   const WindingNumbers winding = winding_numbers(*arrangement, weights);
 
-  Boundary boundary;
+  SolidBoundary boundary;
   boundary.points = arrangement->points;
   double lost = 0, all = 0;
   for (std::uint32_t f = 0; f < arrangement->facets.size(); ++f) {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/base/union_find.h"
 #include "core/geometry/around_edge.h"
 #include "core/geometry/predicates.h"
 #include "core/reconstruct/boundary.h"
@@ -12,7 +13,7 @@ namespace {
 // Every triangle has three corners 3f + i. Corners at one vertex that are joined across edges are a
 // fan; a manifold vertex has one.
 
-std::uint32_t corner_at(const Boundary& boundary, std::uint32_t f, std::uint32_t v) {
+std::uint32_t corner_at(const SolidBoundary& boundary, std::uint32_t f, std::uint32_t v) {
   const Triangle& t = boundary.triangles[f];
   return 3 * f + (t[0] == v ? 0u : t[1] == v ? 1u : 2u);
 }
@@ -22,7 +23,7 @@ struct Wedge {
   std::uint32_t first, second;
 };
 
-std::vector<Wedge> wedges_at(const Boundary& boundary, std::uint32_t a, std::uint32_t b,
+std::vector<Wedge> wedges_at(const SolidBoundary& boundary, std::uint32_t a, std::uint32_t b,
                              std::vector<EdgeFacet>& fan) {
   std::vector<Wedge> wedges;
   if (fan.size() == 2) return {{fan[0].facet, fan[1].facet}};
@@ -33,8 +34,8 @@ std::vector<Wedge> wedges_at(const Boundary& boundary, std::uint32_t a, std::uin
 }
 
 /// Joins corners along all edges; edges whose wedges stay together at both ends are returned.
-std::vector<std::pair<std::uint32_t, std::uint32_t>> join_fans(const Boundary& boundary,
-                                                               IndexSets& corners) {
+std::vector<std::pair<std::uint32_t, std::uint32_t>> join_fans(const SolidBoundary& boundary,
+                                                               UnionFind& corners) {
   std::vector<std::pair<std::pair<std::uint32_t, std::uint32_t>, std::vector<Wedge>>> shared;
   for (auto& [edge, fan] : edge_fans(boundary.triangles)) {
     std::vector<Wedge> wedges = wedges_at(boundary, edge.first, edge.second, fan);
@@ -60,7 +61,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> join_fans(const Boundary& b
 }
 
 /// Puts a vertex in the middle of an edge.
-void halve(Boundary& boundary, std::uint32_t a, std::uint32_t b) {
+void halve(SolidBoundary& boundary, std::uint32_t a, std::uint32_t b) {
   const GridPoint &p = boundary.points[a], &q = boundary.points[b];
   const auto middle = static_cast<std::uint32_t>(boundary.points.size());
   boundary.points.push_back({(p.x + q.x) / 2, (p.y + q.y) / 2, (p.z + q.z) / 2});
@@ -79,7 +80,7 @@ void halve(Boundary& boundary, std::uint32_t a, std::uint32_t b) {
 }
 
 /// Into the solid, from the normals of a fan weighted by their angles (Thürmer, Wüthrich 1998).
-Point3 inwards(const Boundary& boundary, const std::vector<std::uint32_t>& fan) {
+Point3 inwards(const SolidBoundary& boundary, const std::vector<std::uint32_t>& fan) {
   Point3 sum;
   for (const std::uint32_t corner : fan) {
     const Triangle& t = boundary.triangles[corner / 3];
@@ -103,17 +104,17 @@ Point3 inwards(const Boundary& boundary, const std::vector<std::uint32_t>& fan) 
 
 }  // namespace
 
-void separate_contacts(Boundary& boundary, double gap_m) {
+void separate_contacts(SolidBoundary& boundary, double gap_m) {
   constexpr int kRounds = 3;  // halving an edge makes two that may be stuck in turn
-  IndexSets corners(0);
+  UnionFind corners(0);
   for (int round = 0; round < kRounds; ++round) {
-    corners = IndexSets(boundary.triangles.size() * 3);
+    corners = UnionFind(boundary.triangles.size() * 3);
     const auto stuck = join_fans(boundary, corners);
     if (stuck.empty()) break;
     for (const auto& [a, b] : stuck) halve(boundary, a, b);
   }
   if (corners.size() != boundary.triangles.size() * 3) {
-    corners = IndexSets(boundary.triangles.size() * 3);
+    corners = UnionFind(boundary.triangles.size() * 3);
     join_fans(boundary, corners);
   }
 
