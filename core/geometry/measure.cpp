@@ -1,8 +1,10 @@
 #include "core/geometry/measure.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace citymesh {
 namespace {
@@ -29,6 +31,14 @@ std::vector<Triangle> each_once(std::span<const Triangle> triangles) {
   std::sort(sorted.begin(), sorted.end());
   sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
   return sorted;
+}
+
+constexpr std::size_t kSamplesPerTriangle = 7;
+
+std::array<GridPoint, 3> corners_of(std::span<const GridPoint> points, const Triangle& t) {
+  std::array<GridPoint, 3> corners{points[t[0]], points[t[1]], points[t[2]]};
+  std::sort(corners.begin(), corners.end());
+  return corners;
 }
 
 }  // namespace
@@ -112,27 +122,36 @@ double DistanceField::distance_m(const GridPoint& p) const {
   return nearest;
 }
 
-Deviation deviation_to(std::span<const GridPoint> points, std::span<const Triangle> triangles,
-                       const DistanceField& other) {
+Deviation deviation_to(const TriangleView& from, const TriangleView& to) {
+  if (from.triangles.empty() || to.triangles.empty()) return {};
+  // Most triangles of a healed surface are the source's own: those need no search.
+  std::vector<std::array<GridPoint, 3>> known;
+  known.reserve(to.triangles.size());
+  for (const Triangle& t : to.triangles) known.push_back(corners_of(to.points, t));
+  std::sort(known.begin(), known.end());
+  std::optional<DistanceField> field;
+
   Deviation result;
   double sum = 0;
-  std::uint64_t samples = 0;
-  const auto sample = [&](const GridPoint& p) {
-    const double d = other.distance_m(p);
-    if (!std::isfinite(d)) return;
-    result.max_m = std::max(result.max_m, d);
-    sum += d;
-    ++samples;
-  };
-  for (const Triangle& t : triangles) {
-    const GridPoint &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
-    for (const GridPoint& p : {a, b, c}) sample(p);
-    sample({(a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2});
-    sample({(b.x + c.x) / 2, (b.y + c.y) / 2, (b.z + c.z) / 2});
-    sample({(c.x + a.x) / 2, (c.y + a.y) / 2, (c.z + a.z) / 2});
-    sample({(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3});
+  for (const Triangle& t : from.triangles) {
+    if (std::binary_search(known.begin(), known.end(), corners_of(from.points, t))) continue;
+    if (!field) field.emplace(to.points, to.triangles);
+    const GridPoint &a = from.points[t[0]], &b = from.points[t[1]], &c = from.points[t[2]];
+    const GridPoint samples[kSamplesPerTriangle]{
+        a,
+        b,
+        c,
+        {(a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2},
+        {(b.x + c.x) / 2, (b.y + c.y) / 2, (b.z + c.z) / 2},
+        {(c.x + a.x) / 2, (c.y + a.y) / 2, (c.z + a.z) / 2},
+        {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3, (a.z + b.z + c.z) / 3}};
+    for (const GridPoint& p : samples) {
+      const double d = field->distance_m(p);
+      result.max_m = std::max(result.max_m, d);
+      sum += d;
+    }
   }
-  if (samples > 0) result.mean_m = sum / static_cast<double>(samples);
+  result.mean_m = sum / static_cast<double>(kSamplesPerTriangle * from.triangles.size());
   return result;
 }
 

@@ -43,9 +43,14 @@ struct Deviation {
   double max_m = 0, mean_m = 0;
 };
 
-/// Distance from one surface to another, at the corners, edge middles and centres of its triangles.
-Deviation deviation_to(std::span<const GridPoint> points, std::span<const Triangle> triangles,
-                       const DistanceField& other);
+struct TriangleView {
+  std::span<const GridPoint> points;
+  std::span<const Triangle> triangles;
+};
+
+/// Distance from one surface to another, at the corners, edge middles and centres of its triangles;
+/// 0 where one has no triangles.
+Deviation deviation_to(const TriangleView& from, const TriangleView& to);
 
 /// Both directions together: the larger maximum, the mean of the means.
 Deviation two_sided(const Deviation& a, const Deviation& b);

@@ -102,8 +102,9 @@ std::optional<std::int64_t> roof_percentile(const Shell& shell, std::int64_t bas
         constexpr int kParts = 4;
         for (int i = 0; i < kParts; ++i)
           for (int j = 0; j < 2 * (kParts - i) - 1; ++j) {
-            const double u = (i + (j % 2 ? 2.0 : 1.0) / 3.0) / kParts;
-            const double v = (j / 2 + (j % 2 ? 2.0 : 1.0) / 3.0) / kParts;
+            const int pair = j / 2;
+            const double within = (j % 2 ? 2.0 : 1.0) / 3.0;
+            const double u = (i + within) / kParts, v = (pair + within) / kParts;
             samples.emplace_back(static_cast<double>(a.z) + u * static_cast<double>(b.z - a.z) +
                                      v * static_cast<double>(c.z - a.z),
                                  area / (kParts * kParts));
@@ -117,8 +118,10 @@ std::optional<std::int64_t> roof_percentile(const Shell& shell, std::int64_t bas
   std::sort(samples.begin(), samples.end());
   double total = 0, sum = 0;
   for (const auto& [z, area] : samples) total += area;
-  for (const auto& [z, area] : samples)
-    if ((sum += area) >= kPercentile * total) return std::llround(z);
+  for (const auto& [z, area] : samples) {
+    sum += area;
+    if (sum >= kPercentile * total) return std::llround(z);
+  }
   return std::llround(samples.back().first);
 }
 

@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <utility>
 
 #include "core/heal/heal.h"
 #include "core/heal/steps.h"
+#include "core/validate/validate.h"
 
 namespace citymesh {
 
@@ -11,9 +13,10 @@ std::vector<Issue> make_fit(Shell& shell, double planarity_tolerance_m, const De
   group_solids(shell);
   std::vector<Issue> refused = gate(shell);
   if (!refused.empty()) return refused;
+  const std::vector<bool> even = sound_faces(shell, {0, planarity_tolerance_m});
+  if (std::find(even.begin(), even.end(), false) == even.end()) return {};
   Shell cut = shell;
   cuts = split_uneven_faces(cut, planarity_tolerance_m, false);
-  if (cuts.empty()) return {};
   // Pieces may be uneven in turn, and the cuts of neighbours may not go together: then triangles,
   // of which nothing else can be found.
   split_uneven_faces(cut, planarity_tolerance_m, true);

@@ -107,16 +107,24 @@ class Openings {
   std::vector<Opening> openings_;
 };
 
-/// What of a shell can be triangulated, as a reference to measure from.
-std::vector<Triangle> triangles_of(const Shell& shell, bool with_added = true) {
-  std::vector<Triangle> all;
-  for (const Face& face : shell.faces) {
-    if (face.added && !with_added) continue;
-    if (const auto triangles = triangulate(shell.points, face.rings))
-      all.insert(all.end(), triangles->begin(), triangles->end());
+/// What of a shell can be triangulated, as a reference to measure from; faces that close holes
+/// last.
+struct Triangles {
+  std::vector<Triangle> all{};
+  std::size_t added = 0;
+
+  explicit Triangles(const Shell& shell) {
+    std::vector<Triangle> new_ones;
+    for (const Face& face : shell.faces)
+      if (const auto triangles = triangulate(shell.points, face.rings)) {
+        std::vector<Triangle>& these = face.added ? new_ones : all;
+        these.insert(these.end(), triangles->begin(), triangles->end());
+      }
+    added = new_ones.size();
+    all.insert(all.end(), new_ones.begin(), new_ones.end());
   }
-  return all;
-}
+  std::span<const Triangle> of_input() const { return std::span(all).first(all.size() - added); }
+};
 
 /// Two-sided distance; faces that close holes are no deviation, but what they cover is found there.
 Deviation deviation_between(const Shell& raw, const Shell& result) {
@@ -124,17 +132,9 @@ Deviation deviation_between(const Shell& raw, const Shell& result) {
   Shell input = raw;
   StepContext unnoted;
   clean_rings(input, unnoted);
-  const std::vector<Triangle> before = triangles_of(input), after = triangles_of(result);
-  return two_sided(deviation_to(input.points, before, DistanceField(result.points, after)),
-                   deviation_to(result.points, triangles_of(result, false),
-                                DistanceField(input.points, before)));
-}
-
-bool is_closed(const Shell& shell) {
-  const EdgeUses uses = edge_uses(shell);
-  return std::all_of(uses.begin(), uses.end(), [](const auto& edge) {
-    return edge.second.size() == 2 && edge.second[0].forward != edge.second[1].forward;
-  });
+  const Triangles before(input), after(result);
+  return two_sided(deviation_to({input.points, before.all}, {result.points, after.all}),
+                   deviation_to({result.points, after.of_input()}, {input.points, before.all}));
 }
 
 /// The rungs between `healed` and the block, best first; each takes the same input anew.
@@ -181,7 +181,7 @@ class Ladder {
                                   {options_.snap_tolerance_m, options_.planarity_tolerance_m})
                              .issues;
         if (is_closed(input.shell))
-          result_.volume_before_m3 = volume_m3(input.shell.points, triangles_of(input.shell));
+          result_.volume_before_m3 = volume_m3(input.shell.points, Triangles(input.shell).all);
       }
       if (geometry->footprint) continue;
       if (try_as_is(input) || try_healed(input)) return std::move(result_);
@@ -236,6 +236,7 @@ class Ladder {
         drop_double_triangles(shell, step);
         if (openings) openings->give_back(shell);
         if (shell.faces.empty() || step.max_displacement_m > options_.max_displacement_m) continue;
+        if (!is_closed(shell)) continue;  // no gate would pass it
         if (!fits(shell, step).empty()) continue;
         result_.max_displacement_m = std::max(input.max_displacement_m, step.max_displacement_m);
         result_.repairs = std::move(step.repairs);

@@ -62,7 +62,7 @@ bool is_planar(const Shell& shell, const Ring& loop, double tolerance_m) {
 /// Loops that walk every free edge against the face it belongs to, cut where they touch themselves.
 std::vector<Ring> free_loops(const Shell& shell) {
   std::map<std::uint32_t, std::vector<std::uint32_t>> next;
-  for (const auto& [edge, uses] : edge_uses(shell)) {
+  for (const auto& [edge, uses] : EdgeUses(shell)) {
     if (uses.size() != 1) continue;
     if (uses[0].forward)
       next[edge.second].push_back(edge.first);

@@ -66,7 +66,7 @@ bool is_flat(const Shell& shell, const std::vector<std::uint32_t>& sheet, double
 }  // namespace
 
 void drop_inner_sheets(Shell& shell, StepContext& context) {
-  const EdgeUses uses = edge_uses(shell);
+  const EdgeUses uses(shell);
   if (std::all_of(uses.begin(), uses.end(),
                   [](const auto& edge) { return edge.second.size() == 2; }))
     return;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "core/citymodel/edges.h"
 #include "core/geometry/triangulation.h"
@@ -42,7 +43,7 @@ void orient_faces(Shell& shell, StepContext& context) {
     bool turned;  ///< the two faces walk their edge in the same direction
   };
   std::vector<std::vector<Link>> links(shell.faces.size());
-  for (const auto& [edge, uses] : edge_uses(shell)) {
+  for (const auto& [edge, uses] : EdgeUses(shell)) {
     if (uses.size() != 2 || uses[0].face == uses[1].face) continue;
     const bool turned = uses[0].forward == uses[1].forward;
     links[uses[0].face].push_back({uses[1].face, turned});
@@ -93,16 +94,16 @@ void drop_duplicate_faces(Shell& shell, StepContext& context) {
     groups[std::move(corners)].push_back(f);
   }
   std::vector<char> gone(shell.faces.size(), 0);
-  EdgeUses uses;
+  std::optional<EdgeUses> uses;
   for (const auto& [corners, faces] : groups) {
     if (faces.size() < 2) continue;
-    if (uses.empty()) uses = edge_uses(shell);
+    if (!uses) uses.emplace(shell);
     // An inner wall is one whose edges pair up without it.
     bool inner = true;
     for (const Ring& ring : shell.faces[faces[0]].rings)
       for (std::size_t i = 0; i < ring.size(); ++i) {
-        const std::uint32_t a = ring[i], b = ring[(i + 1) % ring.size()];
-        const std::size_t others = uses[{std::min(a, b), std::max(a, b)}].size() - faces.size();
+        const std::size_t others =
+            uses->of(ring[i], ring[(i + 1) % ring.size()]).size() - faces.size();
         inner = inner && others % 2 == 0;
       }
     for (std::size_t i = inner ? 0 : 1; i < faces.size(); ++i) {

@@ -24,6 +24,7 @@ std::vector<std::vector<Triangle>> plane_pieces(std::span<const GridPoint> point
                                                 double tolerance_m) {
   const EdgeFans fans = edge_fans(triangles);
   std::vector<Point3> normals;
+  normals.reserve(triangles.size());
   for (const Triangle& t : triangles)
     normals.push_back(normal_of(points[t[0]], points[t[1]], points[t[2]]));
   std::vector<std::uint32_t> by_area(triangles.size());

@@ -98,6 +98,7 @@ ValidatedBuilding validate_building(const NamedBuilding& named, const Inputs& in
   }
   if (sound && comparable.size() > 1) {
     std::vector<const SolidBody*> solids;
+    solids.reserve(comparable.size());
     for (const std::size_t i : comparable) solids.push_back(&result.solids[i]);
     std::vector<Issue> overlaps = validate_parts(solids);
     std::move(overlaps.begin(), overlaps.end(), std::back_inserter(report.issues_before));
@@ -130,6 +131,7 @@ std::vector<BuildingReport> Validation::validate(std::span<const NamedBuilding> 
     std::move(found.begin(), found.end(), std::back_inserter(validated[i].report.issues_before));
   });
   std::vector<BuildingReport> reports;
+  reports.reserve(validated.size());
   for (ValidatedBuilding& building : validated) reports.push_back(std::move(building.report));
   return reports;
 }

@@ -338,7 +338,7 @@ std::vector<GridPoint2> pinches(const Shell& shell) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
-  for (const auto& [edge, uses] : edge_uses(shell)) {
+  for (const auto& [edge, uses] : EdgeUses(shell)) {
     if (uses.size() > 2)
       for (const std::uint32_t v : {edge.first, edge.second})
         places.insert(project(shell.points[v], Axis::Z));

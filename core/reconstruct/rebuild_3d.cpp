@@ -75,6 +75,7 @@ bool is_crossing(const Shell& shell) {
     triangles.insert(triangles.end(), pieces->begin(), pieces->end());
   }
   std::vector<GridBox> boxes;
+  boxes.reserve(triangles.size());
   for (const Triangle& t : triangles) boxes.push_back(box_of(shell.points, t));
   const BoxTree tree(boxes);
   const auto corners = [&](std::uint32_t f) {

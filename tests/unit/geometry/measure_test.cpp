@@ -27,15 +27,15 @@ TEST(Measure, DistanceToATriangleIsToItsNearestPoint) {
 TEST(Measure, DeviationSeesBothDirections) {
   const auto small = box({0, 0, 0}, {10000, 10000, 10000});
   const auto tall = box({0, 0, 0}, {10000, 10000, 30000});
-  const DistanceField to_small(small.points, small.triangles), to_tall(tall.points, tall.triangles);
-  const Deviation there = deviation_to(small.points, small.triangles, to_tall);
-  const Deviation back = deviation_to(tall.points, tall.triangles, to_small);
+  const TriangleView of_small{small.points, small.triangles}, of_tall{tall.points, tall.triangles};
+  const Deviation there = deviation_to(of_small, of_tall);
+  const Deviation back = deviation_to(of_tall, of_small);
   EXPECT_NEAR(there.max_m, 0.5,
               1e-9);  // the middle of the lower roof lies between the taller walls
   EXPECT_NEAR(back.max_m, 2.0, 1e-9);
   EXPECT_NEAR(two_sided(there, back).max_m, 2.0, 1e-9);
   EXPECT_GT(two_sided(there, back).mean_m, 0.0);
-  EXPECT_EQ(deviation_to(small.points, small.triangles, to_small).max_m, 0.0);
+  EXPECT_EQ(deviation_to(of_small, of_small).max_m, 0.0);
 }
 
 TEST(BoxTree, FindsWhatASearchOfAllBoxesFinds) {
