@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <map>
+#include <span>
 
 #include "core/geometry/triangulation.h"
 #include "core/heal/steps.h"
@@ -7,13 +7,14 @@
 namespace citymesh {
 
 void drop_double_triangles(Shell& shell, StepContext& context) {
-  struct Owner {
+  struct Copy {
+    Triangle corners;  ///< sorted
     std::uint32_t face;
     std::uint32_t triangle;
     bool even;  ///< an even permutation of the sorted corners: which way it faces
   };
   std::vector<std::vector<Triangle>> triangles(shell.faces.size());
-  std::map<Triangle, std::vector<Owner>> owners;
+  std::vector<Copy> all;
   for (std::uint32_t f = 0; f < shell.faces.size(); ++f) {
     auto found = triangulate(shell.points, shell.faces[f].rings);
     if (!found) return;  // a face that has no triangles is for the gate to refuse
@@ -23,22 +24,27 @@ void drop_double_triangles(Shell& shell, StepContext& context) {
       std::rotate(key.begin(), std::min_element(key.begin(), key.end()), key.end());
       const bool even = key[1] < key[2];
       if (!even) std::swap(key[1], key[2]);
-      owners[key].push_back({f, t, even});
+      all.push_back({key, f, t, even});
     }
   }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Copy& a, const Copy& b) { return a.corners < b.corners; });
   std::vector<std::vector<char>> gone(shell.faces.size());
-  for (const auto& [key, copies] : owners) {
+  bool any = false;
+  for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
+    while (last < all.size() && all[last].corners == all[first].corners) ++last;
+    const std::span<const Copy> copies(all.data() + first, last - first);
     // A face that closes a hole over an existing one closed the wrong hole: that is for the gate to
     // refuse.
     if (copies.size() < 2 || std::any_of(copies.begin(), copies.end(),
-                                         [&](const Owner& o) { return shell.faces[o.face].added; }))
+                                         [&](const Copy& c) { return shell.faces[c.face].added; }))
       continue;
     const auto even = static_cast<std::size_t>(
-        std::count_if(copies.begin(), copies.end(), [](const Owner& o) { return o.even; }));
+        std::count_if(copies.begin(), copies.end(), [](const Copy& c) { return c.even; }));
     const bool inner = 2 * even == copies.size();
     const bool keep_even = 2 * even > copies.size();
     bool kept = inner;
-    for (const Owner& copy : copies) {
+    for (const Copy& copy : copies) {
       if (!kept && copy.even == keep_even) {
         kept = true;
         continue;
@@ -46,8 +52,11 @@ void drop_double_triangles(Shell& shell, StepContext& context) {
       gone[copy.face].resize(triangles[copy.face].size(), 0);
       gone[copy.face][copy.triangle] = 1;
     }
-    context.note(inner ? "inner_face_dropped" : "duplicate_face_dropped", shell.points[key[0]]);
+    any = true;
+    context.note(inner ? "inner_face_dropped" : "duplicate_face_dropped",
+                 shell.points[copies[0].corners[0]]);
   }
+  if (!any) return;
   std::vector<Face> kept;
   for (std::uint32_t f = 0; f < shell.faces.size(); ++f) {
     if (gone[f].empty()) {

@@ -52,15 +52,29 @@ std::vector<Ring> split_at_touches(const Ring& ring) {
   return simple;
 }
 
+/// Rings that visit each of their corners once have neither repeats nor spikes nor touches.
+bool is_clean(const Face& face) {
+  return std::all_of(face.rings.begin(), face.rings.end(), [](Ring ring) {
+    if (ring.size() < 3) return false;
+    std::sort(ring.begin(), ring.end());
+    return std::adjacent_find(ring.begin(), ring.end()) == ring.end();
+  });
+}
+
 double dot(const Point3& a, const Point3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 }  // namespace
 
 void clean_rings(Shell& shell, StepContext& context) {
   std::vector<Face> cleaned;
+  cleaned.reserve(shell.faces.size());
   for (Face& face : shell.faces) {
     const std::string& id = shell.surface_ids[face.source];
     if (face.rings.empty()) continue;
+    if (is_clean(face)) {
+      cleaned.push_back(std::move(face));
+      continue;
+    }
     std::vector<Ring> exteriors, holes;
     Point3 normal{};
     for (std::size_t r = 0; r < face.rings.size(); ++r) {
