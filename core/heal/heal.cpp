@@ -107,34 +107,36 @@ class Openings {
   std::vector<Opening> openings_;
 };
 
-/// What of a shell can be triangulated, as a reference to measure from; faces that close holes
-/// last.
-struct Triangles {
-  std::vector<Triangle> all{};
-  std::size_t added = 0;
-
-  explicit Triangles(const Shell& shell) {
-    std::vector<Triangle> new_ones;
-    for (const Face& face : shell.faces)
-      if (const auto triangles = triangulate(shell.points, face.rings)) {
-        std::vector<Triangle>& these = face.added ? new_ones : all;
-        these.insert(these.end(), triangles->begin(), triangles->end());
-      }
-    added = new_ones.size();
-    all.insert(all.end(), new_ones.begin(), new_ones.end());
+/// What of a shell can be triangulated, as a reference to measure from.
+template <class Counts>
+std::vector<Triangle> triangles_of(const Shell& shell, Counts&& counts) {
+  std::vector<Triangle> all;
+  for (const Face& face : shell.faces) {
+    if (!counts(face)) continue;
+    if (const auto triangles = triangulate(shell.points, face.rings))
+      all.insert(all.end(), triangles->begin(), triangles->end());
   }
-  std::span<const Triangle> of_input() const { return std::span(all).first(all.size() - added); }
-};
+  return all;
+}
 
-/// Two-sided distance; faces that close holes are no deviation, but what they cover is found there.
+bool any_face(const Face&) { return true; }
+
+/// Two-sided distance. Faces that close holes, or stand for polygons that enclose no area as they
+/// cross themselves, are no deviation, but what they cover is found there.
 Deviation deviation_between(const Shell& raw, const Shell& result) {
   // A face that only repeats a corner has no triangles, but is no gap either.
   Shell input = raw;
   StepContext unnoted;
   clean_rings(input, unnoted);
-  const Triangles before(input), after(result);
-  return two_sided(deviation_to({input.points, before.all}, {result.points, after.all}),
-                   deviation_to({result.points, after.of_input()}, {input.points, before.all}));
+  std::vector<char> measurable(std::max(raw.surface_ids.size(), result.surface_ids.size()), 0);
+  measurable[0] = 1;  // of faces without a name nothing is known
+  for (const Face& face : input.faces)
+    if (triangulate(input.points, face.rings)) measurable[face.source] = 1;
+  const auto of_input = [&](const Face& face) { return !face.added && measurable[face.source]; };
+  const auto before = triangles_of(input, any_face), after = triangles_of(result, any_face);
+  return two_sided(
+      deviation_to({input.points, before}, {result.points, after}),
+      deviation_to({result.points, triangles_of(result, of_input)}, {input.points, before}));
 }
 
 /// The rungs between `healed` and the block, best first; each takes the same input anew.
@@ -181,7 +183,8 @@ class Ladder {
                                   {options_.snap_tolerance_m, options_.planarity_tolerance_m})
                              .issues;
         if (is_closed(input.shell))
-          result_.volume_before_m3 = volume_m3(input.shell.points, Triangles(input.shell).all);
+          result_.volume_before_m3 =
+              volume_m3(input.shell.points, triangles_of(input.shell, any_face));
       }
       if (geometry->footprint) continue;
       if (try_as_is(input) || try_healed(input)) return std::move(result_);

@@ -15,7 +15,6 @@ import os
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -26,11 +25,14 @@ BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
 
 
 def call(command):
-    """(exit code, stdout, last line of stderr, seconds)"""
-    started = time.monotonic()
-    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, stdin=subprocess.DEVNULL)
-    last = (done.stderr.strip().splitlines() or [""])[-1]
-    return done.returncode, done.stdout, last, time.monotonic() - started
+    """(exit code, stdout, last line of stderr, CPU seconds)"""
+    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
+        child = subprocess.Popen([str(word) for word in command], stdout=out, stderr=err, stdin=subprocess.DEVNULL)
+        _, status, usage = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)
+        out.seek(0), err.seek(0)
+        last = (err.read().strip().splitlines() or [""])[-1]
+        return child.returncode, out.read(), last, usage.ru_utime + usage.ru_stime
 
 
 class Outcome:
@@ -43,7 +45,7 @@ class Outcome:
         self.faults = []     # what must not be
         self.notes = []      # what a reader should know
         self.seconds = 0.0
-        self.val3dity = None  # (errors by code, seconds)
+        self.val3dity = None  # (errors by code, its seconds, those of healing to CityJSON)
 
     def add(self, other):
         self.buildings += other.buildings
@@ -52,8 +54,9 @@ class Outcome:
         self.notes += other.notes
         self.seconds += other.seconds
         if other.val3dity:
-            codes, seconds = self.val3dity or (collections.Counter(), 0.0)
-            self.val3dity = codes + other.val3dity[0], seconds + other.val3dity[1]
+            codes, *seconds = self.val3dity or (collections.Counter(), 0.0, 0.0)
+            more, *others = other.val3dity
+            self.val3dity = codes + more, seconds[0] + others[0], seconds[1] + others[1]
 
     def rungs(self):
         return collections.Counter(b["rung"] for b in self.buildings if b["outcome"] == "delivered")
@@ -84,10 +87,13 @@ def judge_meshes(outcome, checker, folder, formats):
                            for failure in verdict["failures"]]
 
 
-def judge_with_val3dity(outcome, program, model):
-    with tempfile.TemporaryDirectory(prefix="citymesh-val3dity-") as folder:
-        report = Path(folder, "report.json")
-        code, _, last, seconds = call([program, model, "--report", report])
+def judge_with_val3dity(outcome, tools, path, options):
+    """The format that val3dity reads alone, for the sake of comparable times."""
+    with tempfile.TemporaryDirectory(prefix="citymesh-val3dity-") as temporary:
+        folder, report = Path(temporary, "out"), Path(temporary, "report.json")
+        _, _, _, healing = call([tools.program, "run", "heal", "--input", path, "--output", folder,
+                                 "--format", "cityjson", "--threads", "1", *options])
+        code, _, last, seconds = call([tools.val3dity, folder / "model.city.json", "--report", report])
         if not report.exists():
             outcome.notes.append(f"{outcome.name}: val3dity: exit code {code}: {last}")
             return
@@ -102,16 +108,15 @@ def judge_with_val3dity(outcome, program, model):
             for primitive in feature.get("primitives", []):
                 collect(primitive.get("errors", []))
         collect(text.get("dataset_errors", []))
-        outcome.val3dity = codes, seconds
+        outcome.val3dity = codes, seconds, healing
 
 
 def run_file(tools, name, path, options, strict=True):
     outcome = Outcome(name)
     with tempfile.TemporaryDirectory(prefix="citymesh-robustness-") as temporary:
         folder = Path(temporary, "out")
-        formats = "obj,stl" + (",cityjson" if tools.val3dity else "")
         code, _, last, outcome.seconds = call([tools.program, "run", tools.process, "--input", path, "--output", folder,
-                                               "--format", formats, "--threads", "1", *options])
+                                               "--format", "obj,stl", "--threads", "1", *options])
         if code not in (0, 1):
             (outcome.faults if strict or code < 0 or code > 100 else outcome.notes).append(f"{name}: exit code {code}: {last}")
             return outcome
@@ -132,7 +137,7 @@ def run_file(tools, name, path, options, strict=True):
         if any(building["outcome"] == "delivered" for building in outcome.buildings):
             judge_meshes(outcome, tools.checker, folder, ("obj", "stl"))
             if tools.val3dity:
-                judge_with_val3dity(outcome, tools.val3dity, folder / "model.city.json")
+                judge_with_val3dity(outcome, tools, path, options)
     return outcome
 
 
@@ -185,8 +190,8 @@ def table_head(first, extra):
 def val3dity_cells(outcome):
     if not outcome.val3dity:
         return ["-", "-"]
-    codes, seconds = outcome.val3dity
-    return [", ".join(f"{code}: {count}" for code, count in sorted(codes.items())) or "0", f"{seconds:.1f} s"]
+    codes, seconds, healing = outcome.val3dity
+    return [", ".join(f"{code}: {count}" for code, count in sorted(codes.items())) or "0", f"{healing:.1f} / {seconds:.1f} s"]
 
 
 def percent(part, whole):
@@ -213,7 +218,7 @@ def real_part(tools, data, only, page, offenders):
     for outcome in outcomes:
         folder = outcome.name.split("/")[0]
         sets.setdefault(folder, Outcome(folder)).add(outcome)
-    extra = ["val3dity errors", "val3dity time"] if tools.val3dity else []
+    extra = ["val3dity errors", "heal / val3dity"] if tools.val3dity else []
     total = Outcome("all")
     page += ["## Real city models", ""] + table_head("data set", extra)
     for outcome in sets.values():
@@ -228,9 +233,9 @@ def real_part(tools, data, only, page, offenders):
     ok &= target(page, sharp >= 0.98 * counted, f"{percent(sharp, counted)} on as_is … rebuilt_3d (target 98 %)")
     ok &= target(page, rungs["lod1_block"] < 0.002 * counted, f"{percent(rungs['lod1_block'], counted)} on lod1_block (target below 0.2 %)")
     if tools.val3dity and total.val3dity:
-        codes, seconds = total.val3dity
+        codes, seconds, healing = total.val3dity
         ok &= target(page, not codes, f"val3dity finds {sum(codes.values())} errors in the healed CityJSON (target 0)")
-        ok &= target(page, total.seconds <= seconds, f"{total.seconds:.1f} s for reading, healing, gates and writing, {seconds:.1f} s for val3dity to validate the result (one thread each)")
+        ok &= target(page, healing <= seconds, f"{healing:.1f} s for reading, healing, gates and writing as CityJSON, {seconds:.1f} s for val3dity to validate the result (one thread each)")
     page.append("")
     if empty:
         page += ["Not counted, because nothing of the asked levels of detail has a face: "
@@ -275,7 +280,7 @@ def generated_part(tools, plan, page, offenders):
     ok &= target(page, len(right) >= 0.99 * count, f"{percent(len(right), count)} on as_is … rebuilt_3d with a volume within 0.5 % of the truth (target 99 %)")
     if outcome.val3dity:
         ok &= target(page, not outcome.val3dity[0], f"val3dity finds {sum(outcome.val3dity[0].values())} errors in the healed CityJSON: {val3dity_cells(outcome)[0]} (target 0)")
-    page.append(f"- {outcome.seconds:.1f} s for all houses on one thread")
+    page.append(f"- {outcome.seconds:.1f} s of CPU for all houses")
     page.append("")
     page += fault_lines(outcome)
     offenders += [dict(b, error=volume_error(b, truth) if b["outcome"] == "delivered" else None)
