@@ -155,6 +155,7 @@ std::vector<Numbers> cavities_of(const Shell& shell) {
       pieces[joined.root(face.rings[0][0])].push_back(f);
   }
   std::vector<Numbers> cavities;
+  cavities.reserve(pieces.size());
   for (auto& [root, faces] : pieces) cavities.push_back(std::move(faces));
   std::sort(cavities.begin(), cavities.end());
   return cavities;

@@ -186,6 +186,7 @@ void CityJsonObjects::append_object(const CityObject& object, const std::string&
 std::string CityJsonObjects::append(const BuildingBodies& building) {
   const std::vector<CityObject> objects = city_objects(building);
   std::vector<std::string> ids;
+  ids.reserve(objects.size());
   for (const CityObject& object : objects)
     ids.push_back(unused_id(object.gml_id, object.body ? object.body->name : "building"));
 

@@ -42,6 +42,7 @@ std::set<FaceKey> keys_of(std::span<const SourceBody> sources) {
 /// What is not in the source is tinted by its rung, what closes a hole stands out.
 std::vector<std::uint8_t> change_styles(const Body& body, const std::set<FaceKey>& source) {
   std::vector<std::uint8_t> styles;
+  styles.reserve(body.mesh.faces.size());
   for (const Face& face : body.mesh.faces)
     styles.push_back(source.contains(key_of(body.mesh.points, face)) ? style::kSound
                      : face.made_by == body.rung                     ? style::kNew
@@ -225,6 +226,7 @@ void Gallery::add(const BuildingReport& report, const BuildingBodies* bodies,
 std::string Gallery::section() const {
   if (exhibits_.empty()) return {};
   std::vector<const Exhibit*> shown;
+  shown.reserve(exhibits_.size());
   for (const Exhibit& exhibit : exhibits_) shown.push_back(&exhibit);
   std::sort(shown.begin(), shown.end(),
             [](const Exhibit* a, const Exhibit* b) { return b->rank < a->rank; });
