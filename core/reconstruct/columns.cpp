@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 
+#include "core/base/union_find.h"
 #include "core/citymodel/edges.h"
 
 namespace citymesh {
@@ -328,28 +329,23 @@ std::vector<GridPoint2> pinches(const Shell& shell) {
   std::set<GridPoint2> places;
   // Corners of faces are joined across the edges at their vertex.
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> corner_of;  // face, vertex
-  std::vector<std::uint32_t> parent;
   for (std::uint32_t f = 0; f < shell.faces.size(); ++f)
     for (const Ring& ring : shell.faces[f].rings)
       for (const std::uint32_t v : ring)
-        if (corner_of.emplace(std::pair(f, v), static_cast<std::uint32_t>(parent.size())).second)
-          parent.push_back(static_cast<std::uint32_t>(parent.size()));
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+        corner_of.emplace(std::pair(f, v), static_cast<std::uint32_t>(corner_of.size()));
+  UnionFind fans(corner_of.size());
   for (const auto& [edge, uses] : EdgeUses(shell)) {
     if (uses.size() > 2)
       for (const std::uint32_t v : {edge.first, edge.second})
         places.insert(project(shell.points[v], Axis::Z));
     for (std::size_t i = 1; i < uses.size(); ++i)
       for (const std::uint32_t v : {edge.first, edge.second})
-        parent[root(corner_of.at({uses[i].face, v}))] = root(corner_of.at({uses[0].face, v}));
+        fans.join(corner_of.at({uses[i].face, v}), corner_of.at({uses[0].face, v}));
   }
   std::map<std::uint32_t, std::uint32_t> fan;  // by vertex
   for (const auto& [corner, index] : corner_of) {
-    const auto [at, is_new] = fan.emplace(corner.second, root(index));
-    if (!is_new && at->second != root(index))
+    const auto [at, is_new] = fan.emplace(corner.second, fans.root(index));
+    if (!is_new && at->second != fans.root(index))
       places.insert(project(shell.points[corner.second], Axis::Z));
   }
   return {places.begin(), places.end()};

@@ -4,6 +4,7 @@
 
 #include "core/base/union_find.h"
 #include "core/geometry/around_edge.h"
+#include "core/geometry/outline.h"
 #include "core/geometry/triangulation.h"
 #include "core/reconstruct/boundary.h"
 
@@ -27,44 +28,19 @@ std::map<std::uint32_t, std::vector<std::uint32_t>> regions_of(const SolidBounda
   return regions;
 }
 
-/// The outline of a region as loops that walk as its triangles do; empty when it touches itself.
-std::vector<Ring> loops_of(const SolidBoundary& boundary,
-                           const std::vector<std::uint32_t>& region) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> walked;
-  for (const std::uint32_t f : region)
-    for (std::size_t i = 0; i < 3; ++i)
-      ++walked[{boundary.triangles[f][i], boundary.triangles[f][(i + 1) % 3]}];
-  std::map<std::uint32_t, std::uint32_t> next;
-  for (const auto& [edge, count] : walked) {
-    if (walked.contains({edge.second, edge.first})) continue;
-    if (!next.emplace(edge.first, edge.second).second) return {};
-  }
-  std::vector<Ring> loops;
-  while (!next.empty()) {
-    Ring& loop = loops.emplace_back();
-    for (auto at = next.begin(); at != next.end(); at = next.find(loop.back())) {
-      loop.push_back(at->second);
-      next.erase(at);
-    }
-  }
-  return loops;
-}
-
 /// The polygon of a region; none when it is not one plane polygon.
 std::vector<Ring> polygon_of(const SolidBoundary& boundary,
                              const std::vector<std::uint32_t>& region) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(region.size());
   Point3 normal;
   for (const std::uint32_t f : region) {
-    const Triangle& t = boundary.triangles[f];
+    const Triangle& t = triangles.emplace_back(boundary.triangles[f]);
     const Point3 n = normal_of(boundary.points[t[0]], boundary.points[t[1]], boundary.points[t[2]]);
     normal = {normal.x + n.x, normal.y + n.y, normal.z + n.z};
   }
-  std::vector<Ring> loops = loops_of(boundary, region);
-  const auto turns_along = [&](const Ring& loop) {
-    return dot(ring_normal(boundary.points, loop), normal) > 0;
-  };
-  if (loops.empty() || std::count_if(loops.begin(), loops.end(), turns_along) != 1) return {};
-  std::iter_swap(loops.begin(), std::find_if(loops.begin(), loops.end(), turns_along));
+  std::vector<Ring> loops = polygon_of(boundary.points, triangles);
+  if (loops.empty()) return {};
 
   const double size = length(normal);
   const GridPoint& base = boundary.points[loops[0][0]];

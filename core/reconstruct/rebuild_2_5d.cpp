@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "core/base/union_find.h"
 #include "core/geometry/box_tree.h"
 #include "core/geometry/triangulation.h"
 #include "core/reconstruct/columns.h"
@@ -287,26 +288,28 @@ class Rebuild {
     }
   }
 
+  /// Cells that `belongs` holds for, in groups that hang together across edges that `joins` holds
+  /// for.
+  template <class Belongs, class Joins>
+  std::vector<std::vector<std::uint32_t>> groups(Belongs&& belongs, Joins&& joins) const {
+    UnionFind sets(partition_.cells.size());
+    for (const Partition::Edge& edge : partition_.edges)
+      if (joins(edge)) sets.join(edge.left, edge.right);
+    std::map<std::uint32_t, std::vector<std::uint32_t>> by_root;
+    for (std::uint32_t c = 1; c < partition_.cells.size(); ++c)
+      if (belongs(c)) by_root[sets.root(c)].push_back(c);
+    std::vector<std::vector<std::uint32_t>> result;
+    result.reserve(by_root.size());
+    for (auto& [first, cells] : by_root) result.push_back(std::move(cells));
+    return result;
+  }
+
   /// Connected cells that `belongs` holds for.
   template <class Belongs>
   std::vector<std::vector<std::uint32_t>> groups(Belongs&& belongs) const {
-    std::vector<std::uint32_t> parent(partition_.cells.size());
-    for (std::uint32_t c = 0; c < parent.size(); ++c) parent[c] = c;
-    const auto root = [&](std::uint32_t c) {
-      while (parent[c] != c) c = parent[c] = parent[parent[c]];
-      return c;
-    };
-    for (const Partition::Edge& edge : partition_.edges)
-      if (belongs(edge.left) && belongs(edge.right)) {
-        const std::uint32_t s = root(edge.left), t = root(edge.right);
-        parent[std::max(s, t)] = std::min(s, t);
-      }
-    std::map<std::uint32_t, std::vector<std::uint32_t>> by_root;
-    for (std::uint32_t c = 1; c < parent.size(); ++c)
-      if (belongs(c)) by_root[root(c)].push_back(c);
-    std::vector<std::vector<std::uint32_t>> result;
-    for (auto& [first, cells] : by_root) result.push_back(std::move(cells));
-    return result;
+    return groups(belongs, [&](const Partition::Edge& edge) {
+      return belongs(edge.left) && belongs(edge.right);
+    });
   }
 
   /// Vertices of the cells that satisfy `counts(neighbour)` on the other side of an edge.
@@ -472,24 +475,11 @@ class Rebuild {
 
   /// Connected cells with the same column, or (`solid` false) without one; the outside apart.
   std::vector<std::vector<std::uint32_t>> same_groups(bool solid) const {
-    std::vector<std::uint32_t> parent(partition_.cells.size());
-    for (std::uint32_t c = 0; c < parent.size(); ++c) parent[c] = c;
-    const auto root = [&](std::uint32_t c) {
-      while (parent[c] != c) c = parent[c] = parent[parent[c]];
-      return c;
-    };
-    for (const Partition::Edge& edge : partition_.edges) {
-      if (edge.left == Partition::kOutside || edge.right == Partition::kOutside) continue;
-      if (columns_[edge.left] != columns_[edge.right]) continue;
-      const std::uint32_t s = root(edge.left), t = root(edge.right);
-      parent[std::max(s, t)] = std::min(s, t);
-    }
-    std::map<std::uint32_t, std::vector<std::uint32_t>> by_root;
-    for (std::uint32_t c = 1; c < parent.size(); ++c)
-      if (columns_[c].has_value() == solid) by_root[root(c)].push_back(c);
-    std::vector<std::vector<std::uint32_t>> result;
-    for (auto& [first, cells] : by_root) result.push_back(std::move(cells));
-    return result;
+    return groups([&](std::uint32_t c) { return columns_[c].has_value() == solid; },
+                  [&](const Partition::Edge& edge) {
+                    return edge.left != Partition::kOutside && edge.right != Partition::kOutside &&
+                           columns_[edge.left] == columns_[edge.right];
+                  });
   }
 
   void add_notch(const GridPoint2& p, std::int64_t half) {

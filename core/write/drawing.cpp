@@ -58,15 +58,7 @@ std::string face_edges(const Page& page, const PaintFace& face, std::int32_t tri
     for (const auto& ring : face.rings)
       for (std::size_t j = 0; j < ring.size(); ++j) {
         if (!(ring[j] == a) || !(ring[(j + 1) % ring.size()] == b)) continue;
-        const auto from = page.tenths(a), to = page.tenths(b);
-        path += 'M';
-        append_tenths(path, from[0]);
-        path += ' ';
-        append_tenths(path, from[1]);
-        path += 'L';
-        append_tenths(path, to[0]);
-        path += ' ';
-        append_tenths(path, to[1]);
+        append_segment(path, page.tenths(a), page.tenths(b));
       }
   }
   return path;
@@ -88,6 +80,18 @@ double dot(const Point3& a, const Point3& b) { return a.x * b.x + a.y * b.y + a.
 std::array<std::int64_t, 2> Page::tenths(const Point3& view) const {
   return {std::llround(10 * (left + scale * view.x)),
           std::llround(10 * (top - scale * screen_y(view)))};
+}
+
+void append_segment(std::string& svg, const std::array<std::int64_t, 2>& from,
+                    const std::array<std::int64_t, 2>& to) {
+  svg += 'M';
+  append_tenths(svg, from[0]);
+  svg += ' ';
+  append_tenths(svg, from[1]);
+  svg += 'L';
+  append_tenths(svg, to[0]);
+  svg += ' ';
+  append_tenths(svg, to[1]);
 }
 
 void append_tenths(std::string& out, std::int64_t tenths) {

@@ -51,6 +51,8 @@ Outline outline_of(const Page& page, std::span<const Point3> ring);
 
 // SVG: a path of an outline, numbers with one decimal, colours.
 void append_outline(std::string& svg, const Outline& outline);
+void append_segment(std::string& svg, const std::array<std::int64_t, 2>& from,
+                    const std::array<std::int64_t, 2>& to);
 void append_tenths(std::string& svg, std::int64_t tenths);
 void append_px(std::string& svg, double px);
 

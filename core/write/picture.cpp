@@ -157,16 +157,8 @@ void append_ground(std::string& svg, const Drawing& drawing) {
   const double step = round_length(std::max(plan.max.x - plan.min.x, plan.max.y - plan.min.y) / 4);
   svg += "<path fill=\"none\" stroke=\"#fff\" stroke-opacity=\".75\" d=\"";
   const auto line = [&](double x1, double y1, double x2, double y2) {
-    const auto a = page.tenths(to_view({x1, y1, drawing.ground.at(x1, y1)}));
-    const auto b = page.tenths(to_view({x2, y2, drawing.ground.at(x2, y2)}));
-    svg += 'M';
-    append_tenths(svg, a[0]);
-    svg += ' ';
-    append_tenths(svg, a[1]);
-    svg += 'L';
-    append_tenths(svg, b[0]);
-    svg += ' ';
-    append_tenths(svg, b[1]);
+    append_segment(svg, page.tenths(to_view({x1, y1, drawing.ground.at(x1, y1)})),
+                   page.tenths(to_view({x2, y2, drawing.ground.at(x2, y2)})));
   };
   for (double x = std::ceil(plan.min.x / step) * step; x <= plan.max.x; x += step)
     line(x, plan.min.y, x, plan.max.y);

@@ -1,25 +1,23 @@
 #include "core/write/solids.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "core/base/union_find.h"
 
 namespace citymesh {
 namespace {
 
 /// Cuts faces into shells that share no point, where the order of the faces allows it.
 std::vector<FaceRange> split_shells(const TriangleMesh& mesh, FaceRange faces) {
-  std::vector<std::uint32_t> parent(mesh.points.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&parent](std::uint32_t point) {
-    while (parent[point] != point) point = parent[point] = parent[parent[point]];
-    return point;
-  };
+  UnionFind shells_of_points(mesh.points.size());
   for (std::size_t f = faces.begin; f < faces.end; ++f)
     for (const Ring& ring : mesh.faces[f].rings)
       for (const std::uint32_t corner : ring)
-        parent[root(corner)] = root(mesh.faces[f].rings[0][0]);
+        shells_of_points.join(corner, mesh.faces[f].rings[0][0]);
 
-  const auto shell_of = [&](std::size_t f) { return root(mesh.faces[f].rings[0][0]); };
+  const auto shell_of = [&](std::size_t f) {
+    return shells_of_points.root(mesh.faces[f].rings[0][0]);
+  };
   std::vector<std::size_t> last_face(mesh.points.size(), 0);
   for (std::size_t f = faces.begin; f < faces.end; ++f) last_face[shell_of(f)] = f;
   std::vector<FaceRange> shells;
