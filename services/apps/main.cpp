@@ -7,6 +7,7 @@
 #include "core/pipeline/pipeline.h"
 #include "core/write/write.h"
 #include "services/apps/commands.h"
+#include "services/apps/serve_flags.h"
 
 namespace citymesh {
 namespace {
@@ -110,53 +111,6 @@ void add_index(CLI::App& program, IndexArguments& arguments, int& code) {
   command.callback([&] { code = index_command(arguments); });
 }
 
-void add_endpoint(CLI::App& command, const std::string& name, Endpoint& endpoint,
-                  const std::string& what) {
-  command
-      .add_option_function<std::string>(
-          name,
-          [&endpoint, name](const std::string& text) {
-            const auto parsed = parse_endpoint(text);
-            if (!parsed) throw CLI::ValidationError(name, parsed.error().message);
-            endpoint = *parsed;
-          },
-          what + "; port 0: any free one")
-      ->type_name("HOST:PORT")
-      ->default_str(to_string(endpoint));
-}
-
-void add_serve(CLI::App& program, ServeOptions& options, int& code) {
-  auto& command = *program.add_subcommand(
-      "serve", "the job service: REST, gRPC and workers in one process, until Ctrl-C");
-  command.add_option("--data", options.data, "folder of CityGML and CityJSON files to serve")
-      ->required()
-      ->type_name("DIR");
-  command.add_option("--state", options.state, "folder for jobs and results")
-      ->type_name("DIR")
-      ->capture_default_str();
-  add_endpoint(command, "--listen", options.listen, "address of the REST API");
-  add_endpoint(command, "--grpc", options.grpc, "address of the gRPC API");
-  command
-      .add_option("--public_url", options.public_url,
-                  "base of all links, for a service behind a proxy; default: from the request")
-      ->type_name("URL");
-  const auto add = [&command](const char* name, auto& value, const char* what) {
-    command.add_option(name, value, what)->capture_default_str();
-  };
-  add("--workers", options.workers, "jobs worked on at the same time");
-  add("--threads", options.threads, "threads of all workers together; 0: one per core");
-  add("--lease_s", options.lease_s, "a worker not heard of for so long counts as dead");
-  add("--max_attempts", options.max_attempts, "deaths of a worker after which its job is failed");
-  add("--job_timeout_s", options.job_timeout_s, "a job that runs longer is failed; 0: no limit");
-  add("--max_open_jobs", options.max_open_jobs, "accepted and running jobs; more are refused");
-  add("--max_body_bytes", options.max_body_bytes, "size of a request");
-  add("--max_connections", options.max_connections, "REST connections at the same time");
-  add("--max_watches", options.max_watches, "gRPC watch streams at the same time");
-  add("--log_level", options.log_level, "debug, info, warning or error");
-  command.footer("Logs are JSON lines on stdout. Exit codes: 0 stopped; 2 could not run.");
-  command.callback([&] { code = serve_command(options); });
-}
-
 int run_program(int argc, char** argv) {
   CLI::App program{
       "citymesh turns 3D city models into closed, 2-manifold, simulation-ready meshes.",
@@ -173,7 +127,7 @@ int run_program(int argc, char** argv) {
   add_validate(program, validate_arguments, code);
   add_heal(program, heal_arguments, code);
   add_index(program, index_arguments, code);
-  add_serve(program, serve_options, code);
+  add_serve(program, serve_options, [&] { code = serve_command(serve_options); });
   program.add_subcommand("processes", "prints the processes with their inputs and outputs")
       ->callback([&] { code = processes_command(); });
 

@@ -1,0 +1,114 @@
+#include "services/apps/serve_flags.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace citymesh {
+namespace {
+
+/// Of a flag or a name in the file.
+std::string environment_name(std::string_view name) {
+  std::string result = "CITYMESH_";
+  for (const char c : name.substr(std::min(name.find_first_not_of('-'), name.size())))
+    result += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return result;
+}
+
+/// Leaves out of the file what the environment says: CLI11 would let the file win.
+class FileBelowEnvironment : public CLI::ConfigTOML {
+ public:
+  std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
+    auto settings = CLI::ConfigTOML::from_config(input);
+    std::erase_if(settings, [](const CLI::ConfigItem& item) {
+      return std::getenv(environment_name(item.name).c_str()) != nullptr;
+    });
+    return settings;
+  }
+};
+
+CLI::Option* add_endpoint(CLI::App& command, const std::string& name, Endpoint& endpoint,
+                          const std::string& what) {
+  return command
+      .add_option_function<std::string>(
+          name,
+          [&endpoint, name](const std::string& text) {
+            const auto parsed = parse_endpoint(text);
+            if (!parsed) throw CLI::ValidationError(name, parsed.error().message);
+            endpoint = *parsed;
+          },
+          what + "; port 0: any free one")
+      ->type_name("HOST:PORT")
+      ->default_str(to_string(endpoint));
+}
+
+}  // namespace
+
+void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> run) {
+  program.config_formatter(std::make_shared<FileBelowEnvironment>());
+  // CLI11 looks for the file before it looks at the environment.
+  const char* named = std::getenv("CITYMESH_CONFIG");
+  program
+      .set_config("--config", named ? named : "",
+                  "TOML file with settings of `serve` in a section [serve], below environment and "
+                  "flags; default: the one that CITYMESH_CONFIG names",
+                  named != nullptr)
+      ->type_name("FILE");
+  program.allow_config_extras(CLI::config_extras_mode::error);
+
+  auto& command = *program.add_subcommand(
+      "serve", "the job service: REST, gRPC and workers in one process, until Ctrl-C");
+  command.fallthrough();  // to --config
+  command.allow_config_extras(CLI::config_extras_mode::error);
+  command.add_option("--data", options.data, "folder of CityGML and CityJSON files to serve")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("--state", options.state, "folder for jobs and results")
+      ->type_name("DIR")
+      ->capture_default_str();
+  add_endpoint(command, "--listen", options.listen, "address of the REST API");
+  add_endpoint(command, "--grpc", options.grpc, "address of the gRPC API");
+  command
+      .add_option("--public_url", options.public_url,
+                  "base of all links, for a service behind a proxy; default: from the request")
+      ->type_name("URL");
+  const auto add = [&command](const char* name, auto& value, const char* what) {
+    command.add_option(name, value, what)->capture_default_str();
+  };
+  add("--workers", options.workers, "jobs worked on at the same time");
+  add("--threads", options.threads, "threads of all workers together; 0: one per core");
+  add("--lease_s", options.lease_s, "a worker not heard of for so long counts as dead");
+  add("--max_attempts", options.max_attempts, "deaths of a worker after which its job is failed");
+  add("--job_timeout_s", options.job_timeout_s, "a job that runs longer is failed; 0: no limit");
+  add("--max_open_jobs", options.max_open_jobs, "accepted and running jobs; more are refused");
+  add("--max_body_bytes", options.max_body_bytes, "size of a request");
+  add("--max_connections", options.max_connections, "REST connections at the same time");
+  add("--max_watches", options.max_watches, "gRPC watch streams at the same time");
+  add("--log_level", options.log_level, "debug, info, warning or error");
+  for (CLI::Option* option : command.get_options())
+    if (option->get_configurable() && !option->get_lnames().empty() &&
+        option->get_lnames()[0] != "help")
+      option->envname(environment_name(option->get_lnames()[0]));
+  const auto print_config = std::make_shared<bool>(false);
+  command
+      .add_flag("--print_config", *print_config,
+                "checks the settings, prints them as such a file, exits")
+      ->configurable(false);
+  command.footer(
+      "Every setting can also stand in section [serve] of the file that --config names, or in the "
+      "environment as CITYMESH_ and the name in capitals; flags win over the environment, that "
+      "over the file. Logs are JSON lines on stdout. Exit codes: 0 stopped; 2 could not run.");
+  command.callback([&options, &command, print_config, run = std::move(run)] {
+    if (!*print_config) return run();
+    if (const auto checked = check(options); !checked)
+      throw CLI::ValidationError("serve", checked.error().message);
+    std::cout << "[serve]\n" << command.config_to_str(true, false) << '\n';
+  });
+}
+
+}  // namespace citymesh
