@@ -6,13 +6,14 @@
 #include <grpcpp/health_check_service_interface.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <utility>
 
 #include "citymesh/v1/jobs.grpc.pb.h"
+#include "core/pipeline/pipeline.h"
 #include "services/jobs/job_manager.h"
+#include "services/rpc/messages.h"
 #include "services/telemetry/metrics.h"
 
 namespace citymesh {
@@ -56,58 +57,6 @@ grpc::StatusCode to_grpc(ErrorCode code) {
 
 grpc::Status to_status(const Error& error) { return {to_grpc(error.code), error.message}; }
 
-v1::JobState to_proto(JobState state) {
-  switch (state) {
-    case JobState::Accepted:
-      return v1::ACCEPTED;
-    case JobState::Running:
-      return v1::RUNNING;
-    case JobState::Successful:
-      return v1::SUCCESSFUL;
-    case JobState::Failed:
-      return v1::FAILED;
-    case JobState::Dismissed:
-      return v1::DISMISSED;
-  }
-  return v1::JOB_STATE_UNSPECIFIED;
-}
-
-v1::Job to_proto(const Job& job) {
-  v1::Job message;
-  message.set_job_id(job.id);
-  message.set_process(job.spec.process);
-  message.set_state(to_proto(job.state));
-  message.set_message(job.message);
-  message.set_stage(job.progress.stage);
-  message.set_done(job.progress.done);
-  message.set_total(job.progress.total);
-  message.set_percent(job.percent);
-  message.set_created_ms(job.created);
-  message.set_started_ms(job.started.value_or(0));
-  message.set_finished_ms(job.finished.value_or(0));
-  message.set_updated_ms(job.updated);
-  for (const auto& file : job.results) {
-    auto& result = *message.add_results();
-    result.set_output(file.output);
-    result.set_file_name(file.file_name);
-    result.set_media_type(file.media_type);
-    result.set_bytes(file.bytes);
-  }
-  if (job.error) {
-    message.set_error_code(std::string(to_string(job.error->code)));
-    message.set_error_message(job.error->message);
-  }
-  return message;
-}
-
-JobSpec to_spec(const v1::SubmitRequest& request) {
-  JobSpec spec;
-  spec.process = request.process();
-  spec.inputs_json = request.inputs_json();
-  for (const auto& output : request.outputs()) spec.outputs[output] = Transmission::Value;
-  return spec;
-}
-
 /// Counts a call and its time when it ends.
 template <class Call>
 grpc::Status measured(Metrics& metrics, std::string_view method, const Call& call) {
@@ -147,6 +96,19 @@ class JobsService final : public v1::Jobs::Service {
                     [&] { return reply(jobs_.dismiss(request->job_id()), answer); });
   }
 
+  grpc::Status List(grpc::ServerContext*, const v1::ListRequest* request,
+                    v1::ListReply* answer) override {
+    return measured(metrics_, "List", [&] { return list(*request, *answer); });
+  }
+
+  grpc::Status Processes(grpc::ServerContext*, const v1::ProcessesRequest*,
+                         v1::ProcessesReply* answer) override {
+    return measured(metrics_, "Processes", [&] {
+      for (const auto& process : processes()) *answer->add_processes() = to_proto(process);
+      return grpc::Status::OK;
+    });
+  }
+
   grpc::Status Watch(grpc::ServerContext* context, const v1::GetRequest* request,
                      grpc::ServerWriter<v1::Job>* writer) override {
     return measured(metrics_, "Watch", [&] { return watch(*context, request->job_id(), *writer); });
@@ -161,6 +123,18 @@ class JobsService final : public v1::Jobs::Service {
   static grpc::Status reply(const Result<Job>& job, v1::Job* answer) {
     if (!job) return to_status(job.error());
     *answer = to_proto(*job);
+    return grpc::Status::OK;
+  }
+
+  grpc::Status list(const v1::ListRequest& request, v1::ListReply& answer) {
+    const auto filter = to_filter(request);
+    if (!filter) return to_status(filter.error());
+    const auto jobs = jobs_.list(*filter);
+    if (!jobs) return to_status(jobs.error());
+    const auto matched = jobs_.count(*filter);
+    if (!matched) return to_status(matched.error());
+    for (const auto& job : *jobs) *answer.add_jobs() = to_proto(job);
+    answer.set_matched(*matched);
     return grpc::Status::OK;
   }
 
@@ -208,7 +182,11 @@ class JobsService final : public v1::Jobs::Service {
               fmt::format("job {} has no result '{}'; available: {}", request.job_id(),
                           request.output(), available)};
     }
-    for (std::uint64_t offset = 0;;) {
+    if (request.offset() > file->bytes)
+      return {grpc::StatusCode::OUT_OF_RANGE,
+              fmt::format("offset is {}, expected at most {}, the size of {}", request.offset(),
+                          file->bytes, file->file_name)};
+    for (std::uint64_t offset = request.offset();;) {
       if (context.IsCancelled()) return grpc::Status::CANCELLED;
       if (stopping_) return {grpc::StatusCode::UNAVAILABLE, "the server is shutting down"};
       auto bytes = jobs_.read_result(request.job_id(), file->file_name, offset, kChunkBytes);

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "citymesh/v1/jobs.grpc.pb.h"
+#include "core/pipeline/pipeline.h"
 #include "services/jobs/job_manager.h"
 #include "services/rpc/server.h"
 #include "services/stores/embedded_store.h"
@@ -77,10 +78,12 @@ class RpcServerTest : public testing::Test {
     ASSERT_TRUE(store_->done(claim));
   }
 
-  std::pair<grpc::Status, std::string> fetch(const std::string& id, const std::string& output) {
+  std::pair<grpc::Status, std::string> fetch(const std::string& id, const std::string& output,
+                                             std::uint64_t offset = 0) {
     v1::FetchResultRequest request;
     request.set_job_id(id);
     request.set_output(output);
+    request.set_offset(offset);
     grpc::ClientContext context;
     const auto reader = stub_->FetchResult(&context, request);
     std::string bytes;
@@ -246,6 +249,84 @@ TEST_F(RpcServerTest, ATakenPortIsAnError) {
   ASSERT_FALSE(taken);
   EXPECT_EQ(taken.error().code, ErrorCode::Unavailable);
   EXPECT_THAT(taken.error().message, HasSubstr(std::to_string(*port)));
+}
+
+TEST_F(RpcServerTest, ADownloadIsResumedWhereItBroke) {
+  const auto id = submitted();
+  std::string mesh(300'000, 'v');
+  mesh += "the end";
+  succeed(started(), mesh);
+  EXPECT_EQ(fetch(id, "obj").second, mesh);
+  EXPECT_EQ(fetch(id, "obj", 299'999).second, "vthe end");
+  const auto [done, nothing] = fetch(id, "obj", mesh.size());
+  EXPECT_TRUE(done.ok());
+  EXPECT_EQ(nothing, "");
+  const auto beyond = fetch(id, "obj", mesh.size() + 1).first;
+  EXPECT_EQ(beyond.error_code(), grpc::StatusCode::OUT_OF_RANGE);
+  EXPECT_THAT(beyond.error_message(), HasSubstr("offset is 300008, expected at most 300007"));
+}
+
+TEST_F(RpcServerTest, JobsAreListedNewestFirstByStateAndProcess) {
+  const auto list = [&](const v1::ListRequest& request) {
+    grpc::ClientContext context;
+    v1::ListReply reply;
+    const auto status = stub_->List(&context, request, &reply);
+    return std::pair(status, reply);
+  };
+  const auto first = submitted(), second = submitted();
+  const auto heal = submit("heal", "{}").second.job_id();
+  succeed(started(), "v");
+
+  const auto [status, all] = list({});
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(all.matched(), 3u);
+  ASSERT_EQ(all.jobs_size(), 3);
+  EXPECT_EQ(all.jobs(0).job_id(), heal);
+
+  v1::ListRequest of_exports;
+  of_exports.add_processes("export-for-simulation");
+  of_exports.add_states(v1::SUCCESSFUL);
+  const auto exports = list(of_exports).second;
+  ASSERT_EQ(exports.jobs_size(), 1);
+  EXPECT_EQ(exports.jobs(0).job_id(), first);
+
+  v1::ListRequest page;
+  page.set_limit(1);
+  page.set_offset(1);
+  const auto middle = list(page).second;
+  EXPECT_EQ(middle.matched(), 3u);
+  ASSERT_EQ(middle.jobs_size(), 1);
+  EXPECT_EQ(middle.jobs(0).job_id(), second);
+
+  page.set_limit(1001);
+  const auto refused = list(page).first;
+  EXPECT_EQ(refused.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_THAT(refused.error_message(), HasSubstr("limit is 1001, expected 1 to 1000"));
+  v1::ListRequest odd;
+  odd.add_states(static_cast<v1::JobState>(9));
+  EXPECT_THAT(list(odd).first.error_message(), HasSubstr("states has 9"));
+}
+
+TEST_F(RpcServerTest, ProcessesAreDescribedAsTheTableHasThem) {
+  grpc::ClientContext context;
+  v1::ProcessesReply reply;
+  ASSERT_TRUE(stub_->Processes(&context, {}, &reply).ok());
+  ASSERT_EQ(reply.processes_size(), static_cast<int>(processes().size()));
+  for (int i = 0; i < reply.processes_size(); ++i) {
+    const auto& told = reply.processes(i);
+    const auto& meant = processes()[static_cast<std::size_t>(i)];
+    EXPECT_EQ(told.id(), meant.id);
+    ASSERT_EQ(told.inputs_size(), static_cast<int>(meant.inputs.size()));
+    for (int k = 0; k < told.inputs_size(); ++k) {
+      const auto& input = told.inputs(k);
+      const auto& option = meant.inputs[static_cast<std::size_t>(k)];
+      EXPECT_EQ(input.name(), option.name);
+      EXPECT_EQ(input.default_json(), option.default_json);
+      EXPECT_EQ(input.choices_size(), static_cast<int>(option.choices.size()));
+      EXPECT_EQ(input.has_minimum(), option.minimum < option.maximum);
+    }
+    EXPECT_EQ(told.outputs_size(), static_cast<int>(meant.outputs.size()));
+  }
 }
 
 }  // namespace
