@@ -49,6 +49,7 @@ RestOptions rest_options(const ServeOptions& options) {
   rest.public_url = options.public_url;
   rest.max_body_bytes = options.max_body_bytes;
   rest.max_connections = options.max_connections;
+  rest.sync_wait_s = options.sync_wait_s;
   return rest;
 }
 

@@ -12,6 +12,7 @@ namespace citymesh {
 namespace {
 
 constexpr double kLongestLease_s = 3600;
+constexpr double kLongestSyncWait_s = 3600;
 constexpr unsigned kMostThreads = 256;
 constexpr std::array<std::string_view, 4> kLogLevels{"debug", "info", "warning", "error"};
 
@@ -81,6 +82,9 @@ Result<void> check(const ServeOptions& options) {
     return wrong("--max_body_bytes", options.max_body_bytes, "1024 to 67108864");
   if (options.max_connections < 1)
     return wrong("--max_connections", options.max_connections, "1 or more");
+  if (!(options.sync_wait_s >= 0 && options.sync_wait_s <= kLongestSyncWait_s))
+    return wrong("--sync_wait_s", options.sync_wait_s,
+                 fmt::format("0 (every execution is a job) to {}", kLongestSyncWait_s));
   if (options.max_watches < 1 || options.max_watches > 4096)
     return wrong("--max_watches", options.max_watches, "1 to 4096");
   if (std::ranges::find(kLogLevels, options.log_level) == kLogLevels.end())

@@ -37,7 +37,8 @@ struct ServeOptions {
   std::uint32_t max_open_jobs = 1000;      ///< accepted and running; more are refused
   std::uint64_t max_body_bytes = 1 << 20;  ///< of a request, REST and gRPC
   std::uint32_t max_connections = 1024;    ///< REST
-  std::uint32_t max_watches = 256;         ///< gRPC streams open at the same time
+  double sync_wait_s = 30;  ///< longest wait of a synchronous execution; 0: every one is a job
+  std::uint32_t max_watches = 256;  ///< gRPC streams open at the same time
 
   std::string log_level = "info";  ///< debug, info, warning, error
 };

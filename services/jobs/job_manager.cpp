@@ -114,6 +114,13 @@ Result<std::vector<Job>> JobManager::list(const JobFilter& filter) { return jobs
 Result<std::uint64_t> JobManager::count(const JobFilter& filter) { return jobs_.count(filter); }
 
 Result<Job> JobManager::dismiss(const std::string& id) {
+  auto job = request_dismissal(id);
+  if (!job || is_final(job->state)) return job;
+  return wait_until(id, options_.dismiss_wait_ms,
+                    [](const Job& now) { return is_final(now.state); });
+}
+
+Result<Job> JobManager::request_dismissal(const std::string& id) {
   auto job = jobs_.update(id, std::nullopt, [](Job& open) {
     open.dismiss_requested = true;
     if (open.state == JobState::Accepted) {
@@ -128,12 +135,9 @@ Result<Job> JobManager::dismiss(const std::string& id) {
     if (job.error().code == ErrorCode::FailedPrecondition) return jobs_.get(id);  // final already
     return job.error();
   }
-  if (is_final(job->state)) {
+  if (is_final(job->state))
     if (auto removed = queue_.remove(id); !removed) return removed.error();
-    return job;
-  }
-  return wait_until(id, options_.dismiss_wait_ms,
-                    [](const Job& now) { return is_final(now.state); });
+  return job;
 }
 
 Result<std::vector<ResultFile>> JobManager::results(const std::string& id) {
@@ -173,6 +177,10 @@ Result<Job> JobManager::wait_for_change(const std::string& id, TimeMs seen_updat
   return wait_until(id, wait_ms, [seen_updated](const Job& job) {
     return job.updated > seen_updated || is_final(job.state);
   });
+}
+
+JobFeed::Subscription JobManager::listen(JobFeed::Listener listener) {
+  return jobs_.changes().subscribe(std::move(listener));
 }
 
 Result<Job> JobManager::wait_until(const std::string& id, TimeMs wait_ms,

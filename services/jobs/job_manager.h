@@ -43,6 +43,8 @@ class JobManager {
   /// final job stays as it is and is no error. The job may still be `running` in the answer, with
   /// `dismiss_requested`, when its worker takes longer than `dismiss_wait_ms`.
   Result<Job> dismiss(const std::string& id);
+  /// The same without waiting for the worker.
+  Result<Job> request_dismissal(const std::string& id);
 
   /// FailedPrecondition (not ready, failed, dismissed) unless successful.
   Result<std::vector<ResultFile>> results(const std::string& id);
@@ -52,6 +54,9 @@ class JobManager {
   /// Blocks until the job changes after `seen_updated`, is final, or `wait_ms` have passed; returns
   /// its present state.
   Result<Job> wait_for_change(const std::string& id, TimeMs seen_updated, TimeMs wait_ms);
+
+  /// Tells of every change that this process makes to a job, see JobFeed.
+  [[nodiscard]] JobFeed::Subscription listen(JobFeed::Listener listener);
 
  private:
   struct Waiting {

@@ -7,25 +7,26 @@
 #include <exception>
 #include <optional>
 
-#include "core/pipeline/pipeline.h"
+#include "services/rest/answers.h"
 #include "services/rest/documents.h"
-#include "services/rest/execute.h"
 #include "services/rest/job_query.h"
 #include "services/rest/links.h"
 #include "services/rest/openapi.h"
 #include "services/rest/pages.h"
 #include "services/rest/problem.h"
 #include "services/rest/processes.h"
-#include "services/rest/results.h"
 
 namespace citymesh {
 namespace {
 
-constexpr std::string_view kJson = "application/json";
 constexpr std::string_view kAllowedHeaders =
-    "Accept, Authorization, Content-Type, Idempotency-Key, If-None-Match, Prefer, Range";
+    "Accept, Authorization, Content-Type, If-Match, If-None-Match, If-Range, Last-Event-ID, "
+    "Prefer, "
+    "Range";
 constexpr std::string_view kExposedHeaders =
-    "Location, Link, Preference-Applied, Content-Disposition, Retry-After";
+    "Location, Content-Location, Link, Preference-Applied, Content-Disposition, ETag, "
+    "Content-Range, "
+    "Accept-Ranges, Retry-After";
 
 /// Matches `/jobs/{id}` against segments; the values of the braces, or nothing.
 std::optional<std::vector<std::string>> match(std::string_view pattern,
@@ -46,26 +47,10 @@ std::optional<std::vector<std::string>> match(std::string_view pattern,
   return values;
 }
 
-bool wants_page(std::string_view accept, const std::map<std::string, std::string>& query) {
-  if (const auto f = query.find("f"); f != query.end()) return f->second == "html";
-  const double page = accept_quality(accept, "text/html");
-  return accept_names(accept, "text/html") && page > 0 && page >= accept_quality(accept, kJson);
-}
-
-Response json_response(std::string body, int status = 200) {
-  return text_response(status, kJson, std::move(body));
-}
-
-bool is_json(std::string_view content_type) {
-  const auto type = media_type_of(content_type);
-  return type.empty() || type == kJson || type.ends_with("+json");
-}
-
-/// Job ids are UUIDs; anything else is no job, whatever it tries to be.
-bool is_job_id(std::string_view id) {
-  return id.size() == 36 && std::ranges::all_of(id, [](char c) {
-           return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || c == '-';
-         });
+Response unexpected(const std::exception& error, const Request& request) {
+  return problem_response(problem_kind(ErrorCode::Internal),
+                          fmt::format("unexpected: {}", error.what()),
+                          request.headers.get("Accept"));
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -77,6 +62,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 const Api::Route Api::kRoutes[] = {
     {"GET", "/", &Api::landing},
     {"GET", "/api", &Api::api_definition},
+    {"GET", "/openapi.json", &Api::api_definition},
     {"GET", "/conformance", &Api::conformance},
     {"GET", "/processes", &Api::process_list},
     {"GET", "/processes/{id}", &Api::process},
@@ -84,6 +70,7 @@ const Api::Route Api::kRoutes[] = {
     {"GET", "/jobs", &Api::job_list},
     {"GET", "/jobs/{id}", &Api::job},
     {"DELETE", "/jobs/{id}", &Api::dismiss},
+    {"GET", "/jobs/{id}/events", &Api::events},
     {"GET", "/jobs/{id}/results", &Api::results},
     {"GET", "/jobs/{id}/results/{output}", &Api::result},
     {"GET", "/healthz", &Api::healthz},
@@ -103,18 +90,41 @@ Response Api::handle(const Request& request) const {
   try {
     response = dispatch(request, route);
   } catch (const std::exception& error) {
-    response = problem_response(problem_kind(ErrorCode::Internal),
-                                fmt::format("unexpected: {}", error.what()),
-                                request.headers.get("Accept"));
+    response = unexpected(error, request);
   }
   add_common_headers(request, response);
+  if (!response.follow || response.follow->streams) {
+    count(request, route, response.status, start);
+    return response;
+  }
+  // What had to wait gets the same finish when it comes.
+  const auto bare =
+      std::make_shared<const Request>(Request{request.method, request.target, request.headers, {}});
+  response.follow->step = [this, bare, route, start,
+                           step = std::move(response.follow->step)](bool last) {
+    FollowStep next;
+    try {
+      next = step(last);
+    } catch (const std::exception& error) {
+      next = {{}, std::make_shared<Response>(unexpected(error, *bare)), true};
+    }
+    if (next.answer) {
+      add_common_headers(*bare, *next.answer);
+      count(*bare, route, next.answer->status, start);
+    }
+    return next;
+  };
+  return response;
+}
+
+void Api::count(const Request& request, std::string_view route, int status,
+                std::chrono::steady_clock::time_point start) const {
   const bool known_method = std::ranges::any_of(
       kRoutes, [&](const Route& known) { return known.method == request.method; });
   metrics_.http_request(known_method || request.method == "HEAD" || request.method == "OPTIONS"
                             ? request.method
                             : "other",
-                        route, response.status, seconds_since(start));
-  return response;
+                        route, status, seconds_since(start));
 }
 
 Response Api::dispatch(const Request& request, std::string_view& route) const {
@@ -222,168 +232,12 @@ Response Api::process_list(const Call& call) const {
   return json_response(process_list_json(call.base, *limit, *offset));
 }
 
-namespace {
-
-Response no_such_process(std::string_view id, std::string_view accept) {
-  return problem_response(
-      problems::kNoSuchProcess,
-      fmt::format("process '{}' does not exist; available: {}", id, process_ids()), accept);
-}
-
-}  // namespace
-
 Response Api::process(const Call& call) const {
   const auto* process = find_process(call.values[0]);
   if (process == nullptr) return no_such_process(call.values[0], call.accept);
   if (wants_page(call.accept, call.target.query))
     return page_response(200, process_page(call.base, *process));
   return json_response(process_description_json(call.base, *process));
-}
-
-Response Api::execute(const Call& call) const {
-  const auto* process = find_process(call.values[0]);
-  if (process == nullptr) return no_such_process(call.values[0], call.accept);
-  const auto content_type = call.request.headers.get("Content-Type");
-  if (!is_json(content_type))
-    return problem_response(
-        problems::kUnsupportedMediaType,
-        fmt::format("the Content-Type is '{}', expected application/json", content_type),
-        call.accept);
-
-  auto spec = decode_execute(*process, call.request.body);
-  if (!spec)
-    return problem_response(problem_kind(spec.error().code), spec.error().message, call.accept);
-  const auto job = jobs_.submit(*std::move(spec));
-  if (!job)
-    return problem_response(problem_kind(job.error().code), job.error().message, call.accept);
-
-  auto response = json_response(status_json(call.base, *job), 201);
-  response.headers.set("Location", job_url(call.base, *job));
-  if (prefers(call.request.headers.get("Prefer"), "respond-async"))
-    response.headers.set("Preference-Applied", "respond-async");
-  return response;
-}
-
-Response Api::job_list(const Call& call) const {
-  auto query = parse_job_query(call.target.query);
-  if (!query) return problem_response(problems::kInvalidQuery, query.error().message, call.accept);
-
-  // The store selects by process and state; what it cannot select by is left out here. The next
-  // page begins behind the last job looked at, so pages neither overlap nor leave gaps.
-  const auto wanted = query->filter.limit;
-  const auto now = now_ms();
-  std::vector<Job> jobs;
-  bool more = false;
-  for (bool end = false; !end && !more;) {
-    auto batch = jobs_.list(query->filter);
-    if (!batch)
-      return problem_response(problem_kind(batch.error().code), batch.error().message, call.accept);
-    end = batch->size() < query->filter.limit;
-    for (auto& job : *batch) {
-      if (jobs.size() == wanted) {
-        more = true;
-        break;
-      }
-      ++query->filter.offset;
-      if (selects(*query, job, now)) jobs.push_back(std::move(job));
-    }
-  }
-
-  const auto url = [&](const std::string& offset) {
-    auto parameters = call.target.query;
-    parameters.erase("f");
-    if (!offset.empty()) parameters["offset"] = offset;
-    std::string text = call.base + "/jobs";
-    char separator = '?';
-    for (const auto& [name, value] : parameters) {
-      text += fmt::format("{}{}={}", separator, name, encode_segment(value));
-      separator = '&';
-    }
-    return text;
-  };
-  const auto next = more ? url(std::to_string(query->filter.offset)) : std::string{};
-  if (wants_page(call.accept, call.target.query))
-    return page_response(200, job_list_page(call.base, jobs, next));
-  return json_response(job_list_json(call.base, jobs, url({}), next));
-}
-
-Result<Job> Api::find_job(const Call& call) const {
-  const auto& id = call.values[0];
-  if (!is_job_id(id))
-    return fail(ErrorCode::NotFound,
-                fmt::format("job '{}' does not exist; expected the id of a job", id));
-  return jobs_.get(id);
-}
-
-Response Api::job_error(const Call& call, const Error& error) const {
-  const auto& kind =
-      error.code == ErrorCode::NotFound ? problems::kNoSuchJob : problem_kind(error.code);
-  return problem_response(kind, error.message, call.accept);
-}
-
-Response Api::job(const Call& call) const {
-  const auto job = find_job(call);
-  if (!job) return job_error(call, job.error());
-  if (wants_page(call.accept, call.target.query))
-    return page_response(200, job_page(call.base, *job));
-  return json_response(status_json(call.base, *job));
-}
-
-Response Api::dismiss(const Call& call) const {
-  if (const auto found = find_job(call); !found) return job_error(call, found.error());
-  auto job = jobs_.dismiss(call.values[0]);
-  if (!job) return job_error(call, job.error());
-  if (is_final(job->state) && job->state != JobState::Dismissed)
-    return problem_response(problems::kJobIsFinal,
-                            fmt::format("job {} is {} and cannot be dismissed any more", job->id,
-                                        to_string(job->state)),
-                            call.accept);
-  return json_response(status_json(call.base, *job));
-}
-
-Response Api::not_successful(const Call& call, const Job& job) const {
-  switch (job.state) {
-    case JobState::Failed: {
-      const auto error = job.error.value_or(Error{ErrorCode::Internal, job.message});
-      return problem_response(failed_job_kind(error.code), error.message, call.accept,
-                              job_url(call.base, job));
-    }
-    case JobState::Dismissed:
-      return problem_response(problems::kResultNotAvailable,
-                              fmt::format("job {} was dismissed and has no results", job.id),
-                              call.accept);
-    default:
-      return problem_response(
-          problems::kResultNotReady,
-          fmt::format("job {} is {}; its results are there once it is successful", job.id,
-                      to_string(job.state)),
-          call.accept);
-  }
-}
-
-Response Api::results(const Call& call) const {
-  const auto job = find_job(call);
-  if (!job) return job_error(call, job.error());
-  if (job->state != JobState::Successful) return not_successful(call, *job);
-  if (wants_page(call.accept, call.target.query))
-    return page_response(200, job_page(call.base, *job));
-  return results_response(jobs_, *job, call.base, call.accept, options_.max_inline_bytes);
-}
-
-Response Api::result(const Call& call) const {
-  const auto job = find_job(call);
-  if (!job) return job_error(call, job.error());
-  if (job->state != JobState::Successful) return not_successful(call, *job);
-  const auto* file = find_result(*job, call.values[1]);
-  if (file == nullptr) {
-    std::vector<std::string_view> names;
-    for (const auto& result : job->results) names.push_back(result.file_name);
-    return problem_response(problems::kNoSuchOutput,
-                            fmt::format("job {} has no output '{}'; available: {}", job->id,
-                                        call.values[1], fmt::join(names, ", ")),
-                            call.accept);
-  }
-  return file_response(jobs_, *job, *file);
 }
 
 Response Api::healthz(const Call&) const { return text_response(200, "text/plain", "ok\n"); }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -15,6 +16,7 @@ struct ApiOptions {
   std::string public_url{};  ///< base of all links; empty: http:// and the request's Host
   std::string cors_allow_origin = "*";
   std::uint64_t max_inline_bytes = 16 << 20;
+  double sync_wait_s = 30;  ///< how long a synchronous execution is waited for; 0: none is
 };
 
 /// The resources of OGC API - Processes 1.0 as a function from request to response; it knows no
@@ -24,7 +26,8 @@ class Api {
   Api(JobManager& jobs, Metrics& metrics, ApiOptions options);
 
   /// Always answers: what is wrong with a request becomes a problem document. A HEAD request gets
-  /// the answer of GET; its body is not to be sent.
+  /// the answer of GET; its body is not to be sent. An answer that has to wait for a job says so in
+  /// `follow`.
   Response handle(const Request& request) const;
 
  private:
@@ -46,6 +49,8 @@ class Api {
 
   Response dispatch(const Request& request, std::string_view& route) const;
   Result<std::string> base_url(const Request& request) const;
+  void count(const Request& request, std::string_view route, int status,
+             std::chrono::steady_clock::time_point start) const;
   void add_common_headers(const Request& request, Response& response) const;
 
   Response landing(const Call& call) const;
@@ -57,6 +62,7 @@ class Api {
   Response job_list(const Call& call) const;
   Response job(const Call& call) const;
   Response dismiss(const Call& call) const;
+  Response events(const Call& call) const;
   Response results(const Call& call) const;
   Response result(const Call& call) const;
   Response healthz(const Call& call) const;
@@ -64,8 +70,6 @@ class Api {
   Response metrics(const Call& call) const;
 
   Result<Job> find_job(const Call& call) const;
-  Response job_error(const Call& call, const Error& error) const;
-  Response not_successful(const Call& call, const Job& job) const;
 
   JobManager& jobs_;
   Metrics& metrics_;

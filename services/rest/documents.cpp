@@ -23,6 +23,8 @@ Json job_links(std::string_view base, const Job& job) {
   Json links = {link_json<Json>(self, "self", kJson, "Status of this job"),
                 link_json<Json>(self, "monitor", kJson, "Status of this job"),
                 link_json<Json>(self, "alternate", kHtml, "This job as a page"),
+                link_json<Json>(self + "/events", "alternate", "text/event-stream",
+                                "Changes of this job as they come"),
                 link_json<Json>(fmt::format("{}/jobs", base), "up", kJson, "Jobs")};
   if (job.state == JobState::Failed)
     links.push_back(link_json<Json>(self + "/results", rel::kExceptions, "application/problem+json",
@@ -98,7 +100,8 @@ std::string landing_json(std::string_view base) {
 
 std::string conformance_json() {
   Json classes = Json::array();
-  for (const auto* name : {"core", "ogc-process-description", "json", "job-list", "dismiss"})
+  for (const auto* name :
+       {"core", "ogc-process-description", "json", "oas30", "job-list", "dismiss"})
     classes.push_back(
         fmt::format("http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/{}", name));
   return dump(Json{{"conformsTo", std::move(classes)}});

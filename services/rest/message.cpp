@@ -239,19 +239,36 @@ bool accept_names(std::string_view accept, std::string_view media_type) {
   return named;
 }
 
+std::vector<std::string_view> list_items(std::string_view list) {
+  std::vector<std::string_view> items;
+  for_each_piece(list, ',', [&](std::string_view item) {
+    if (!item.empty()) items.push_back(item);
+  });
+  return items;
+}
+
 std::string media_type_of(std::string_view content_type) {
   std::string type(trim(content_type.substr(0, content_type.find(';'))));
   std::ranges::transform(type, type.begin(), lower);
   return type;
 }
 
-bool prefers(std::string_view prefer, std::string_view preference) {
-  bool found = false;
+std::optional<std::string> preference_value(std::string_view prefer, std::string_view preference) {
+  std::optional<std::string> value;
   for_each_piece(prefer, ',', [&](std::string_view piece) {
-    found =
-        found || equal_without_case(trim(piece.substr(0, piece.find_first_of(";="))), preference);
+    const auto item = trim(piece.substr(0, piece.find(';')));
+    const auto equals = std::min(item.find('='), item.size());
+    if (value || !equal_without_case(trim(item.substr(0, equals)), preference)) return;
+    auto text = trim(item.substr(std::min(equals + 1, item.size())));
+    if (text.size() > 1 && text.starts_with('"') && text.ends_with('"'))
+      text = text.substr(1, text.size() - 2);
+    value = std::string(text);
   });
-  return found;
+  return value;
+}
+
+bool prefers(std::string_view prefer, std::string_view preference) {
+  return preference_value(prefer, preference).has_value();
 }
 
 bool is_valid_host(std::string_view host) {

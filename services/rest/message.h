@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -41,10 +42,31 @@ struct FilePiece {
   std::function<Result<std::string>(std::uint64_t offset, std::uint64_t max_bytes)> read{};
 };
 
+struct Response;
+
+/// What an answer that follows a job has to say at a moment.
+struct FollowStep {
+  std::string bytes{};                 ///< to be sent now; of answers that stream
+  std::shared_ptr<Response> answer{};  ///< what had to wait; of answers that do not
+  bool end = false;                    ///< nothing follows
+};
+
+/// An answer that depends on how a job goes on.
+struct Follow {
+  std::string job_id{};
+  bool streams = false;  ///< header at once and the body as it comes; else the answer comes whole
+  double longest_s = 0;
+  /// May block. Called at once, whenever the job may have changed, and a last time when
+  /// `longest_s` have passed or the server stops.
+  std::function<FollowStep(bool last)> step{};
+  std::function<void()> client_left{};  ///< may block; called instead of further steps
+};
+
 struct Response {
   int status = 200;
   Headers headers{};
   std::vector<std::variant<std::string, FilePiece>> body{};  ///< sent one after the other
+  std::optional<Follow> follow{};
 };
 
 std::uint64_t body_bytes(const Response& response);
@@ -73,11 +95,17 @@ double accept_quality(std::string_view accept, std::string_view media_type);
 /// Whether Accept names the media type itself, not by a wildcard.
 bool accept_names(std::string_view accept, std::string_view media_type);
 
+/// The trimmed items of a header that is a list; a comma within double quotes does not separate.
+/// Empty items are left out.
+std::vector<std::string_view> list_items(std::string_view list);
+
 /// `Content-Type` without parameters, in lower case.
 std::string media_type_of(std::string_view content_type);
 
 /// Whether a Prefer header holds the preference, as in `Prefer: respond-async, wait=10`.
 bool prefers(std::string_view prefer, std::string_view preference);
+/// The value of a preference, as 10 in `Prefer: wait=10`; nothing when it is absent.
+std::optional<std::string> preference_value(std::string_view prefer, std::string_view preference);
 
 /// `host[:port]` of a Host header that is safe to repeat in links.
 bool is_valid_host(std::string_view host);

@@ -151,20 +151,75 @@ Json schemas() {
   return all;
 }
 
+Json header(std::string_view description, Json schema) {
+  return {{"description", description}, {"schema", std::move(schema)}};
+}
+
+Json url() { return {{"type", "string"}, {"format", "uri"}}; }
+Json binary() { return {{"type", "string"}, {"format", "binary"}}; }
+
+/// Results in every form that a request can ask for.
+Json result_answers() {
+  Json forms = content("application/json", schema_ref("results"));
+  forms["multipart/related"] = {{"schema", text()}};
+  forms["*/*"] = {{"schema", binary()}};
+  return {{"200",
+           {{"description", "A document of values and links, or raw values"},
+            {"content", std::move(forms)}}},
+          {"204",
+           {{"description", "Raw results by reference, in `Link` headers"},
+            {"headers", {{"Link", header("One per output", text())}}}}}};
+}
+
 Json execution_path(const ProcessSpec& process) {
-  auto prefer =
-      parameter("Prefer", "header", "`respond-async` is honoured; jobs always are.", text());
+  const auto applied = header("The preferences that were honoured", text());
   auto created = json_or_page("The job is accepted; `Location` is its address.", "statusInfo");
   created["content"].erase("text/html");
-  created["headers"]["Location"] = {{"description", "Absolute URL of the job"},
-                                    {"schema", {{"type", "string"}, {"format", "uri"}}}};
-  auto post = operation(fmt::format("execute-{}", process.id), "Processes",
-                        fmt::format("Execute {} as a job", process.id),
-                        Json::array({std::move(prefer)}), {{"201", std::move(created)}});
+  created["headers"] = {{"Location", header("Absolute URL of the job", url())},
+                        {"Preference-Applied", applied}};
+  Json answers = Json::object();
+  if (!process.async_only) {
+    answers = result_answers();
+    for (auto& answer : answers) {
+      answer["headers"]["Content-Location"] = header("Where the results stay", url());
+      answer["headers"]["Preference-Applied"] = applied;
+    }
+    created["description"] =
+        "The job is accepted or not yet done; `Location` is its address, and it goes on.";
+  }
+  answers["201"] = std::move(created);
+  const auto* prefer =
+      process.async_only ? "Always executed as a job; `respond-async` is confirmed."
+                         : "`respond-async`: a job at once; `wait=10`: a job when the results are "
+                           "not there after 10 seconds; without it the results.";
+  auto post = operation(
+      fmt::format("execute-{}", process.id), "Processes", fmt::format("Execute {}", process.id),
+      Json::array({parameter("Prefer", "header", prefer, text())}), std::move(answers));
   post["requestBody"] = {
       {"required", true},
       {"content", content("application/json", schema_ref(execute_schema_name(process)))}};
   return {{"post", std::move(post)}};
+}
+
+Json result_operation(const Json& job_id) {
+  const auto etag = header("Names this file; it never changes", text());
+  Json whole = {{"description", "The file"},
+                {"headers", {{"ETag", etag}, {"Accept-Ranges", header("`bytes`", text())}}},
+                {"content", content("*/*", binary())}};
+  Json part = whole;
+  part["description"] = "The range asked for";
+  part["headers"]["Content-Range"] = header("`bytes first-last/size`", text());
+  return operation(
+      "result", "Jobs", "One result file",
+      Json::array({job_id,
+                   parameter("output", "path", "An output (`obj`) or a result file (`picture.svg`)",
+                             text()),
+                   parameter("Range", "header", "One range of bytes, as `bytes=0-499`", text()),
+                   parameter("If-Range", "header", "The ETag of which the range is wanted", text()),
+                   parameter("If-None-Match", "header", "ETags of what the client has", text())}),
+      {{"200", std::move(whole)},
+       {"206", std::move(part)},
+       {"304", {{"description", "The client has it"}, {"headers", {{"ETag", etag}}}}}});
 }
 
 Json paths() {
@@ -186,8 +241,10 @@ Json paths() {
   Json all = Json::object();
   all["/"] = get(operation("landing", "Service", "Landing page", Json::array({f}),
                            {{"200", json_or_page("Where everything is", "landingPage")}}));
-  all["/api"] = get(operation("api", "Service", "This API definition", Json::array({f}),
-                              {{"200", std::move(api_answer)}}));
+  all["/api"] = get(
+      operation("api", "Service", "This API definition", Json::array({f}), {{"200", api_answer}}));
+  all["/openapi.json"] = get(operation("openapi", "Service", "The same under its usual name",
+                                       Json::array({f}), {{"200", std::move(api_answer)}}));
   all["/conformance"] =
       get(operation("conformance", "Service", "Conformance classes", Json::array({f}),
                     {{"200", json_or_page("Conformance classes", "conformance")}}));
@@ -229,24 +286,18 @@ Json paths() {
                    {"content", content("application/json", schema_ref("statusInfo"))}}}});
   all["/jobs/{jobID}"] = std::move(job);
 
-  Json results = content("application/json", schema_ref("results"));
-  results["multipart/related"] = {{"schema", text()}};
-  results["*/*"] = {{"schema", {{"type", "string"}, {"format", "binary"}}}};
+  all["/jobs/{jobID}/events"] = get(operation(
+      "events", "Jobs", "Changes of a job as server-sent events, until it has ended",
+      Json::array({job_id, parameter("Last-Event-ID", "header",
+                                     "The last event seen; only what is newer is sent", text())}),
+      {{"200",
+        {{"description", "Events `status`, their data as JSON"},
+         {"content", content("text/event-stream", text())}}},
+       {"204", {{"description", "The job has ended and the client has seen it"}}}}));
   all["/jobs/{jobID}/results"] =
       get(operation("results", "Jobs", "Results of a job, in the form its request asked for",
-                    Json::array({job_id, f}),
-                    {{"200",
-                      {{"description", "A document of values and links, or raw values"},
-                       {"content", std::move(results)}}},
-                     {"204", {{"description", "Raw results by reference, in `Link` headers"}}}}));
-  all["/jobs/{jobID}/results/{output}"] = get(operation(
-      "result", "Jobs", "One result file",
-      Json::array(
-          {job_id, parameter("output", "path", "An output (`obj`) or a result file (`picture.svg`)",
-                             text())}),
-      {{"200",
-        {{"description", "The file"},
-         {"content", content("*/*", {{"type", "string"}, {"format", "binary"}})}}}}));
+                    Json::array({job_id, f}), result_answers()));
+  all["/jobs/{jobID}/results/{output}"] = get(result_operation(job_id));
 
   all["/healthz"] = get(operation("healthz", "Operations", "Whether the server runs", Json::array(),
                                   plain("It does")));

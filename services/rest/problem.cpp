@@ -63,6 +63,8 @@ const ProblemKind kUnsupportedMediaType{415, kBlank, "Unsupported Media Type"};
 const ProblemKind kBodyTooLarge{413, kBlank, "Payload Too Large"};
 const ProblemKind kHeaderTooLarge{431, kBlank, "Request Header Fields Too Large"};
 const ProblemKind kTooManyConnections{503, kBlank, "Service Unavailable"};
+const ProblemKind kPreconditionFailed{412, kBlank, "Precondition Failed"};
+const ProblemKind kRangeNotSatisfiable{416, kBlank, "Range Not Satisfiable"};
 }  // namespace problems
 
 const ProblemKind& problem_kind(ErrorCode code) { return row_of(code).kind; }

@@ -36,6 +36,8 @@ extern const ProblemKind kUnsupportedMediaType;
 extern const ProblemKind kBodyTooLarge;
 extern const ProblemKind kHeaderTooLarge;
 extern const ProblemKind kTooManyConnections;
+extern const ProblemKind kPreconditionFailed;
+extern const ProblemKind kRangeNotSatisfiable;
 }  // namespace problems
 
 /// The members of a problem document.

@@ -90,11 +90,13 @@ std::string process_url(std::string_view base, const ProcessSpec& process) {
 
 Json summary(std::string_view base, const ProcessSpec& process) {
   const auto self = process_url(base, process);
+  const Json control = process.async_only ? Json{"async-execute", "dismiss"}
+                                          : Json{"sync-execute", "async-execute", "dismiss"};
   return {{"id", process.id},
           {"version", version()},
           {"title", process.title},
           {"description", process.description},
-          {"jobControlOptions", {"async-execute", "dismiss"}},
+          {"jobControlOptions", control},
           {"outputTransmission", {"value", "reference"}},
           {"links",
            {link_json<Json>(self, "self", "application/json", "Process description"),

@@ -180,11 +180,24 @@ const ResultFile* find_result(const Job& job, std::string_view name) {
 Response file_response(JobManager& jobs, const Job& job, const ResultFile& file) {
   Response response;
   response.headers.set("Content-Type", file.media_type);
+  // Results never change: the attempt that made them names them.
+  response.headers.set("ETag", fmt::format("\"{}-{}\"", job.id, job.attempt));
+  response.headers.set("Cache-Control", "private, no-cache");
   response.headers.set("Content-Disposition", content_disposition(file));
   response.headers.set("Content-Security-Policy",
                        std::string(file.media_type == "text/html" ? kPagePolicy : kFilePolicy));
   response.body.emplace_back(piece_of(jobs, job, file));
   return response;
+}
+
+Response values_response(JobManager& jobs, Job job, std::string_view base, std::string_view accept,
+                         std::uint64_t max_inline_bytes) {
+  if (job.spec.outputs.empty()) {
+    for (const auto& wanted : wanted_outputs(job))
+      job.spec.outputs[wanted.output] = Transmission::Value;
+    job.spec.response_document = job.spec.outputs.size() != 1;
+  }
+  return results_response(jobs, job, base, accept, max_inline_bytes);
 }
 
 Response results_response(JobManager& jobs, const Job& job, std::string_view base,

@@ -14,10 +14,15 @@ namespace citymesh {
 Response results_response(JobManager& jobs, const Job& job, std::string_view base,
                           std::string_view accept, std::uint64_t max_inline_bytes);
 
+/// The same as the answer to a synchronous execution, where a request without `outputs` gets values
+/// instead of links: the one output itself, or a document of them.
+Response values_response(JobManager& jobs, Job job, std::string_view base, std::string_view accept,
+                         std::uint64_t max_inline_bytes);
+
 /// The file that `name` stands for: a file name, or an output whose main file it is. nullptr: none.
 const ResultFile* find_result(const Job& job, std::string_view name);
 
-/// One result file, streamed.
+/// One result file, streamed, with an ETag.
 Response file_response(JobManager& jobs, const Job& job, const ResultFile& file);
 
 }  // namespace citymesh

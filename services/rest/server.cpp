@@ -1,6 +1,7 @@
 #include "services/rest/server.h"
 
 #include <fmt/format.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <atomic>
@@ -19,11 +20,11 @@
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
-#include <boost/beast/http/status.hpp>
 #include <boost/beast/http/string_body.hpp>
+#include <cerrno>
 #include <chrono>
 #include <condition_variable>
-#include <ctime>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -31,8 +32,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "core/base/version.h"
+#include "services/jobs/job_manager.h"
 #include "services/rest/api.h"
+#include "services/rest/http_head.h"
 #include "services/rest/message.h"
 #include "services/rest/problem.h"
 
@@ -45,50 +47,20 @@ namespace http = beast::http;
 using asio::awaitable;
 using asio::ip::tcp;
 using boost::system::error_code;
+using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t kChunkBytes = 256 << 10;
 constexpr std::uint64_t kMaxDiscardedBytes = 8 << 20;
 constexpr auto kDiscardTime = std::chrono::seconds(2);
 constexpr auto kAcceptRetryTime = std::chrono::milliseconds(100);
+/// How often an answer looks for changes of its job that another process made.
+constexpr auto kFollowPoll = std::chrono::seconds(1);
 
 std::chrono::milliseconds milliseconds(double seconds) {
   return std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1000.0));
 }
 
 std::string_view view(boost::string_view text) { return {text.data(), text.size()}; }
-
-std::string http_date() {
-  constexpr const char* kDays[] = {"Sun", "Mon", "Tue", "Wed", "Thu", "Fri", "Sat"};
-  constexpr const char* kMonths[] = {"Jan", "Feb", "Mar", "Apr", "May", "Jun",
-                                     "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"};
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  return fmt::format("{}, {:02} {} {} {:02}:{:02}:{:02} GMT", kDays[utc.tm_wday], utc.tm_mday,
-                     kMonths[utc.tm_mon], utc.tm_year + 1900, utc.tm_hour, utc.tm_min, utc.tm_sec);
-}
-
-/// A header value on one line, whatever went into it.
-std::string one_line(std::string value) {
-  std::ranges::replace_if(
-      value, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, ' ');
-  return value;
-}
-
-/// 204 and 304 never have a body.
-bool may_have_body(int status) { return status != 204 && status != 304; }
-
-std::string head_text(const Response& response, bool keep_alive) {
-  std::string text = fmt::format(
-      "HTTP/1.1 {} {}\r\nServer: citymesh/{}\r\nDate: {}\r\nConnection: {}\r\n", response.status,
-      view(http::obsolete_reason(static_cast<http::status>(response.status))), version(),
-      http_date(), keep_alive ? "keep-alive" : "close");
-  if (may_have_body(response.status))
-    text += fmt::format("Content-Length: {}\r\n", body_bytes(response));
-  for (const auto& [name, value] : response.headers.all())
-    text += fmt::format("{}: {}\r\n", name, one_line(value));
-  return text + "\r\n";
-}
 
 /// What a request that could not be read is answered with; nothing when the client is gone.
 std::optional<Response> unreadable(const error_code& error, const RestOptions& options) {
@@ -108,6 +80,56 @@ std::optional<Response> unreadable(const error_code& error, const RestOptions& o
                           {});
 }
 
+/// Wakes one answer when its job changes or its client leaves. Used on the session's strand only.
+class Alarm : public std::enable_shared_from_this<Alarm> {
+ public:
+  explicit Alarm(tcp::socket& socket) : socket_(&socket), timer_(socket.get_executor()) {}
+
+  bool client_left() const { return left_; }
+
+  /// From any thread.
+  void ring() {
+    asio::post(timer_.get_executor(), [self = shared_from_this()] { self->wake(); });
+  }
+
+  void begin() {
+    socket_->async_wait(tcp::socket::wait_read, [self = shared_from_this()](error_code error) {
+      if (error || self->socket_ == nullptr) return;
+      // The next request, sent ahead, makes the socket readable too; an end without one is a
+      // client that does not want its answer any more.
+      char next = 0;
+      const auto got = ::recv(self->socket_->native_handle(), &next, 1, MSG_PEEK | MSG_DONTWAIT);
+      self->left_ = got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR);
+      if (self->left_) self->wake();
+    });
+  }
+  void end() {
+    error_code ignored;
+    if (socket_->is_open()) socket_->cancel(ignored);
+    socket_ = nullptr;
+  }
+
+  void reset() { rung_ = false; }
+  /// Until the alarm rang after the last reset; at most to `until`.
+  awaitable<void> wait(Clock::time_point until) {
+    if (rung_ || left_) co_return;
+    error_code ignored;
+    timer_.expires_at(until);
+    co_await timer_.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+  }
+
+ private:
+  void wake() {
+    rung_ = true;
+    timer_.cancel();
+  }
+
+  tcp::socket* socket_;
+  asio::steady_timer timer_;
+  bool rung_ = false;
+  bool left_ = false;
+};
+
 struct Session {
   explicit Session(tcp::socket socket) : stream(std::move(socket)) {}
   beast::tcp_stream stream;
@@ -117,10 +139,12 @@ struct Session {
 }  // namespace
 
 struct RestServer::Impl {
-  Impl(JobManager& jobs, Metrics& metrics, RestOptions given)
+  Impl(JobManager& jobs_in, Metrics& metrics, RestOptions given)
       : options(std::move(given)),
+        jobs(jobs_in),
         api(jobs, metrics,
-            {options.public_url, options.cors_allow_origin, options.max_inline_bytes}) {}
+            {options.public_url, options.cors_allow_origin, options.max_inline_bytes,
+             options.sync_wait_s}) {}
 
   Result<std::uint16_t> start();
   void stop();
@@ -130,6 +154,7 @@ struct RestServer::Impl {
   awaitable<void> serve(std::shared_ptr<Session> session);
   awaitable<void> refuse(std::shared_ptr<Session> session);
   awaitable<bool> answer_next(Session& session, beast::flat_buffer& buffer);
+  awaitable<std::shared_ptr<Response>> follow(Session& session, const Follow& follow);
   awaitable<bool> write(Session& session, const Response& response, bool head, bool keep_alive);
   awaitable<bool> flush(Session& session, std::string& text);
   awaitable<void> discard_input(Session& session);
@@ -149,6 +174,7 @@ struct RestServer::Impl {
   void close_sessions(bool idle_only);
 
   const RestOptions options;
+  JobManager& jobs;
   const Api api;
   asio::io_context io;
   std::optional<asio::thread_pool> handlers;
@@ -306,9 +332,53 @@ awaitable<bool> RestServer::Impl::answer_next(Session& session, beast::flat_buff
   const bool head = request.method == "HEAD";
 
   auto handle = [this, request = std::move(request)] { return api.handle(request); };
-  const Response response = co_await blocking(std::move(handle));
+  Response response = co_await blocking(std::move(handle));
+  if (response.follow) {
+    if (response.follow->streams) {
+      auto begun = head_text(response, false);
+      const bool sent = co_await flush(session, begun);
+      if (!sent || head) co_return false;
+    }
+    const auto waited_for = co_await follow(session, *response.follow);
+    if (!waited_for) co_return false;
+    response = *waited_for;
+  }
   const bool written = co_await write(session, response, head, keep_alive);
   co_return written&& keep_alive;
+}
+
+/// Goes along with a job; returns the answer that had to wait for it. Nothing when there is none,
+/// or nobody to get it.
+awaitable<std::shared_ptr<Response>> RestServer::Impl::follow(Session& session,
+                                                              const Follow& follow) {
+  const auto alarm = std::make_shared<Alarm>(session.stream.socket());
+  const auto changes = jobs.listen([alarm, id = follow.job_id](const Job& job) {
+    if (job.id == id) alarm->ring();
+  });
+  const auto deadline = Clock::now() + milliseconds(follow.longest_s);
+  alarm->begin();
+  FollowStep step;
+  bool left = false;
+  for (bool end = false; !end && !left;) {
+    alarm->reset();
+    const bool last = stopping || Clock::now() >= deadline;
+    auto take = [&follow, last] { return follow.step(last); };
+    step = co_await blocking(std::move(take));
+    end = step.end || last;
+    left = alarm->client_left();
+    if (!left && !step.bytes.empty()) left = !co_await flush(session, step.bytes);
+    if (!end && !left) co_await alarm->wait(std::min(deadline, Clock::now() + kFollowPoll));
+    left = left || alarm->client_left();
+  }
+  alarm->end();
+  if (left && !step.end && follow.client_left) {
+    auto leave = [&follow] {
+      follow.client_left();
+      return true;
+    };
+    co_await blocking(std::move(leave));
+  }
+  co_return left ? nullptr : step.answer;
 }
 
 awaitable<bool> RestServer::Impl::flush(Session& session, std::string& text) {

@@ -19,6 +19,7 @@ struct RestOptions {
   std::uint32_t max_header_bytes = 16 << 10;
   std::uint32_t max_connections = 1024;       ///< more are answered with 503 and closed
   std::uint64_t max_inline_bytes = 16 << 20;  ///< larger results in a document are given as links
+  double sync_wait_s = 30;  ///< longest wait of a synchronous execution, then a job is the answer
   unsigned io_threads = 2;
   unsigned handler_threads = 4;  ///< store and result files are read here, never on an I/O thread
   double header_timeout_s = 30;  ///< until the next request's header is complete, idling included

@@ -49,6 +49,11 @@ class Connection {
     }
     return true;
   }
+  /// Says nothing more and reads nothing more.
+  void leave() {
+    ::close(socket_);
+    socket_ = -1;
+  }
   void half_close() { ::shutdown(socket_, SHUT_WR); }
 
   /// The next answer; none when the connection ends before it is complete.
@@ -81,6 +86,16 @@ class Connection {
   std::string read_to_end() {
     while (receive()) continue;
     return std::exchange(buffer_, {});
+  }
+
+  /// Everything up to the text; all there is when the connection ends before.
+  std::string read_until(std::string_view text) {
+    std::size_t at = 0;
+    while ((at = buffer_.find(text)) == std::string::npos)
+      if (!receive()) return std::exchange(buffer_, {});
+    auto read = buffer_.substr(0, at + text.size());
+    buffer_.erase(0, read.size());
+    return read;
   }
 
   /// Whether the server closes the connection without a further byte.

@@ -9,54 +9,13 @@
 #include <thread>
 #include <vector>
 
-#include "tests/integration/rest/connection.h"
-#include "tests/unit/rest/job_service.h"
+#include "tests/integration/rest/rest_over_socket.h"
 
 namespace citymesh {
 namespace {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
-
-constexpr auto* kBox = R"({"inputs":{"bbox":{"bbox":[13.4,52.5,13.41,52.51]}}})";
-
-std::string request(std::string_view method, std::string_view target, std::string_view body = {}) {
-  std::string text = fmt::format("{} {} HTTP/1.1\r\nHost: localhost\r\n", method, target);
-  if (!body.empty())
-    text += fmt::format("Content-Type: application/json\r\nContent-Length: {}\r\n", body.size());
-  return text + "\r\n" + std::string(body);
-}
-
-class RestOverSocket : public ::testing::Test {
- protected:
-  void start(RestOptions options = {}) {
-    options.port = 0;
-    server_ = std::make_unique<RestServer>(service_.jobs(), service_.metrics(), options);
-    port_ = must(server_->start());
-  }
-
-  Connection::Answer send(std::string_view bytes) {
-    Connection connection(port_);
-    connection.send(bytes);
-    auto answer = connection.read();
-    if (!answer) {
-      ADD_FAILURE() << "no answer";
-      return {};
-    }
-    return *answer;
-  }
-  void expect_still_working() { EXPECT_EQ(send(request("GET", "/processes")).status, 200); }
-
-  std::string finished_job(const std::vector<JobService::File>& files) {
-    const auto status = send(request("POST", "/processes/export-for-simulation/execution", kBox));
-    service_.succeed(service_.start(), files);
-    return json::parse(status.body)["jobID"];
-  }
-
-  JobService service_;
-  std::unique_ptr<RestServer> server_;
-  std::uint16_t port_ = 0;
-};
 
 std::string large_text(std::size_t bytes) {
   std::string text;
@@ -84,7 +43,7 @@ TEST_F(RestOverSocket, JobCycleFromExecutionToDownload) {
 TEST_F(RestOverSocket, HealIsAProcessWhoseModelIsFetched) {
   start();
   EXPECT_THAT(send(request("GET", "/processes/heal")).body, HasSubstr("max_hole_area_m2"));
-  const auto created = send(request("POST", "/processes/heal/execution", kBox));
+  const auto created = send(request("POST", "/processes/heal/execution", kBox, kAsync));
   ASSERT_EQ(created.status, 201);
   const auto id = json::parse(created.body)["jobID"].get<std::string>();
   service_.succeed(service_.start(), {{"cityjson", "model.city.json", "application/city+json",
@@ -116,7 +75,7 @@ TEST_F(RestOverSocket, PipelinedRequestsAreAnsweredInOrder) {
   start();
   Connection connection(port_);
   connection.send(request("GET", "/healthz") + request("GET", "/nothing") +
-                  request("POST", "/processes/validate/execution", "{}") +
+                  request("POST", "/processes/validate/execution", "{}", kAsync) +
                   request("GET", "/readyz"));
   EXPECT_EQ(connection.read()->body, "ok\n");
   EXPECT_EQ(connection.read()->status, 404);
@@ -185,7 +144,7 @@ TEST_F(RestOverSocket, OversizeBodiesAreRefusedWhetherAnnouncedOrChunked) {
 TEST_F(RestOverSocket, ChunkedBodyWithinTheLimitIsTaken) {
   start();
   EXPECT_EQ(send("POST /processes/validate/execution HTTP/1.1\r\nHost: localhost\r\n"
-                 "Transfer-Encoding: chunked\r\n\r\n2\r\n{}\r\n0\r\n\r\n")
+                 "Prefer: respond-async\r\nTransfer-Encoding: chunked\r\n\r\n2\r\n{}\r\n0\r\n\r\n")
                 .status,
             201);
 }
@@ -204,7 +163,7 @@ TEST_F(RestOverSocket, ExpectContinueIsAnsweredBeforeTheBodyIsSent) {
   Connection connection(port_);
   connection.send(
       "POST /processes/validate/execution HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2\r\n"
-      "Expect: 100-continue\r\n\r\n");
+      "Prefer: respond-async\r\nExpect: 100-continue\r\n\r\n");
   EXPECT_EQ(connection.read()->status, 100);
   connection.send("{}");
   EXPECT_EQ(connection.read()->status, 201);

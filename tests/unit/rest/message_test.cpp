@@ -44,6 +44,14 @@ TEST(Prefer, FindsAPreferenceAmongOthers) {
   EXPECT_FALSE(prefers("return=minimal", "respond-async"));
 }
 
+TEST(Prefer, GivesTheValueOfAPreference) {
+  EXPECT_EQ(preference_value("respond-async, wait=10", "wait"), "10");
+  EXPECT_EQ(preference_value("Wait = \"5\"; strict", "wait"), "5");
+  EXPECT_EQ(preference_value("respond-async", "respond-async"), "");
+  EXPECT_EQ(preference_value("wait=1, wait=2", "wait"), "1") << "the first one counts";
+  EXPECT_EQ(preference_value("await=1", "wait"), std::nullopt);
+}
+
 TEST(Host, IsANameOrAddressWithAnOptionalPort) {
   for (const auto* host :
        {"localhost", "localhost:8080", "127.0.0.1:1", "[::1]:8080", "a-b.example"})

@@ -1,0 +1,193 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/pipeline/pipeline.h"
+#include "tests/unit/rest/rest_api.h"
+
+namespace citymesh {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+constexpr auto* kValidate = "/processes/validate/execution";
+constexpr auto* kHeal = "/processes/heal/execution";
+
+class RestExecution : public RestApi {
+ protected:
+  Response execute(const char* target, std::string prefer = {}, std::string body = kBox) {
+    Fields fields;
+    if (!prefer.empty()) fields.emplace_back("Prefer", std::move(prefer));
+    return send("POST", target, std::move(body), std::move(fields));
+  }
+  /// What a waiting answer becomes now.
+  static std::shared_ptr<Response> step(const Response& response, bool last = false) {
+    return response.follow->step(last).answer;
+  }
+  std::string only_job() {
+    const auto jobs = must(service_.jobs().list({}));
+    EXPECT_EQ(jobs.size(), 1U);
+    return jobs.at(0).id;
+  }
+};
+
+TEST_F(RestExecution, ProcessesDeclareHowTheyCanBeExecuted) {
+  for (const auto& process : processes()) {
+    const auto declared =
+        document(get("/processes/" + std::string(process.id)))["jobControlOptions"];
+    EXPECT_EQ(declared, process.async_only ? json({"async-execute", "dismiss"})
+                                           : json({"sync-execute", "async-execute", "dismiss"}));
+  }
+}
+
+TEST_F(RestExecution, AsyncOnlyProcessIsAJobWithAndWithoutPreference) {
+  const auto plain = execute(kExecution);
+  EXPECT_EQ(plain.status, 201);
+  EXPECT_FALSE(plain.headers.has("Preference-Applied"));
+  for (const auto* prefer : {"respond-async", "respond-async, wait=5", "wait=5"}) {
+    const auto response = execute(kExecution, prefer);
+    EXPECT_EQ(response.status, 201);
+    EXPECT_FALSE(response.follow);
+    EXPECT_EQ(response.headers.get("Preference-Applied"),
+              prefers(prefer, "respond-async") ? "respond-async" : "");
+  }
+}
+
+TEST_F(RestExecution, PreferRespondAsyncMakesAJobOfAnyProcess) {
+  for (const auto* target : {kValidate, kHeal}) {
+    const auto response = execute(target, "respond-async");
+    EXPECT_EQ(response.status, 201);
+    EXPECT_EQ(response.headers.get("Preference-Applied"), "respond-async");
+    EXPECT_THAT(response.headers.get("Location"), StartsWith("http://citymesh.test:8080/jobs/"));
+  }
+}
+
+TEST_F(RestExecution, WithoutPreferenceTheAnswerWaitsForTheResults) {
+  const auto response = execute(kValidate);
+  ASSERT_TRUE(response.follow);
+  EXPECT_FALSE(response.follow->streams);
+  EXPECT_EQ(response.follow->longest_s, 30);
+  EXPECT_EQ(response.follow->job_id, only_job());
+  EXPECT_FALSE(step(response));
+  const auto claim = service_.start();
+  EXPECT_FALSE(step(response));
+  service_.succeed(claim, JobService::export_files());
+  EXPECT_TRUE(step(response));
+}
+
+TEST_F(RestExecution, OneOutputIsTheAnswerItself) {
+  const auto response = execute(kValidate);
+  service_.succeed(service_.start(), {{"report", "report.json", "application/json", R"({"a":1})"},
+                                      {"report.html", "report.html", "text/html", "<html/>"}});
+  const auto answer = step(response);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->status, 200);
+  EXPECT_EQ(answer->headers.get("Content-Type"), "application/json");
+  EXPECT_EQ(text(*answer), R"({"a":1})");
+  EXPECT_EQ(answer->headers.get("Content-Location"),
+            "http://citymesh.test:8080/jobs/" + only_job() + "/results");
+  EXPECT_FALSE(answer->headers.has("Link")) << "clients take it for the monitor";
+  EXPECT_TRUE(answer->headers.has("X-Content-Type-Options")) << "the finish of every answer";
+}
+
+TEST_F(RestExecution, SeveralOutputsAreADocumentOfValues) {
+  const auto response = execute(kHeal);
+  service_.succeed(service_.start(), JobService::export_files());
+  const auto answer = step(response);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->headers.get("Content-Type"), "application/json");
+  const auto results = document(*answer);
+  EXPECT_EQ(results["report"]["value"]["counts"]["requested"], 12);
+  EXPECT_EQ(results["obj"], "o b_1\nv 0 0 0\n");
+  EXPECT_EQ(results["stl_binary"]["encoding"], "base64");
+}
+
+TEST_F(RestExecution, TheRequestDecidesTheFormOfTheAnswer) {
+  const auto answer_to = [&](std::string body) {
+    const auto response = execute(kHeal, {}, std::move(body));
+    service_.succeed(service_.start(), JobService::export_files());
+    return *step(response);
+  };
+  EXPECT_EQ(text(answer_to(R"({"outputs":{"obj":{}},"response":"raw"})")), "o b_1\nv 0 0 0\n");
+  EXPECT_THAT(answer_to(R"({"outputs":{"obj":{},"report":{}}})").headers.get("Content-Type"),
+              StartsWith("multipart/related"));
+  EXPECT_EQ(
+      document(answer_to(R"({"outputs":{"report":{}},"response":"document"})"))["report"]["value"],
+      json::parse(R"({"counts":{"requested":12}})"));
+  const auto linked = answer_to(R"({"outputs":{"obj":{"transmissionMode":"reference"}}})");
+  EXPECT_EQ(linked.status, 204);
+  EXPECT_THAT(linked.headers.get("Link"), HasSubstr("/results/model.obj>"));
+}
+
+TEST_F(RestExecution, FailureOfTheJobIsTheAnswer) {
+  const auto response = execute(kValidate);
+  service_.fail_job(service_.start(), {ErrorCode::InvalidArgument, "the features have 2 CRSs"});
+  const auto answer = step(response);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(detail(*answer, 400), "the features have 2 CRSs");
+}
+
+TEST_F(RestExecution, DismissedMeanwhileThereAreNoResults) {
+  const auto response = execute(kValidate);
+  must(service_.jobs().dismiss(only_job()));
+  EXPECT_EQ(problem(*step(response), 404)["type"], kExceptions + "result-not-available");
+}
+
+TEST_F(RestExecution, AtTheEndOfTheWaitTheJobIsTheAnswerAndGoesOn) {
+  const auto response = execute(kValidate);
+  const auto answer = step(response, true);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->status, 201);
+  EXPECT_EQ(answer->headers.get("Location"), "http://citymesh.test:8080/jobs/" + only_job());
+  EXPECT_EQ(document(*answer)["status"], "accepted");
+  EXPECT_EQ(must(service_.jobs().get(only_job())).state, JobState::Accepted);
+}
+
+TEST_F(RestExecution, PreferWaitShortensTheWaitAndIsConfirmed) {
+  const auto sync = execute(kValidate, "wait=5");
+  ASSERT_TRUE(sync.follow);
+  EXPECT_EQ(sync.follow->longest_s, 5);
+  EXPECT_EQ(step(sync, true)->headers.get("Preference-Applied"), "wait=5");
+
+  const auto either = execute(kValidate, "respond-async, wait=7");
+  ASSERT_TRUE(either.follow);
+  EXPECT_EQ(either.follow->longest_s, 7);
+  EXPECT_EQ(step(either, true)->headers.get("Preference-Applied"), "respond-async");
+
+  EXPECT_EQ(execute(kValidate, "wait=0").status, 201);
+  const auto longer = execute(kValidate, "wait=86400");
+  EXPECT_EQ(longer.follow->longest_s, 30) << "the server's limit holds";
+  EXPECT_FALSE(step(longer, true)->headers.has("Preference-Applied"));
+}
+
+TEST_F(RestExecution, PreferencesThatCannotBeReadAreIgnored) {
+  for (const auto* prefer : {"wait=soon", "wait=-1", "wait=1.5", "wait", "return=minimal", ",,;="})
+    EXPECT_EQ(execute(kValidate, prefer).follow->longest_s, 30) << prefer;
+}
+
+TEST_F(RestExecution, AClientThatLeavesTakesItsJobWithIt) {
+  const auto response = execute(kValidate);
+  response.follow->client_left();
+  EXPECT_EQ(must(service_.jobs().get(only_job())).state, JobState::Dismissed);
+}
+
+TEST_F(RestExecution, AServerThatNeverWaitsMakesAJobOfEveryExecution) {
+  const Api never(service_.jobs(), service_.metrics(),
+                  {.public_url = "http://c", .sync_wait_s = 0});
+  EXPECT_EQ(never.handle({"POST", kValidate, {}, "{}"}).status, 201);
+}
+
+TEST_F(RestExecution, BadRequestsAreRefusedAtOnceAndLeaveNoJob) {
+  for (const auto* body : {"", "{", "[]", "{\"inputs\":{\"a\":1,\"a\":2}}", "{\"x\":\"\xff\"}"}) {
+    const auto response = send("POST", kValidate, body, {{"Content-Type", "application/json"}});
+    EXPECT_FALSE(response.follow);
+    problem(response, 400);
+  }
+  EXPECT_TRUE(must(service_.jobs().list({})).empty());
+}
+
+}  // namespace
+}  // namespace citymesh
