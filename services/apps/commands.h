@@ -36,5 +36,6 @@ int run_command(const RunArguments& arguments);
 int index_command(const IndexArguments& arguments);
 int serve_command(const ServeOptions& options);
 int processes_command();
+int openapi_command(const std::string& server_url);
 
 }  // namespace citymesh

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <string>
 
 #include "core/base/version.h"
@@ -111,6 +112,16 @@ void add_index(CLI::App& program, IndexArguments& arguments, int& code) {
   command.callback([&] { code = index_command(arguments); });
 }
 
+void add_openapi(CLI::App& program, int& code) {
+  auto& command =
+      *program.add_subcommand("openapi", "prints the OpenAPI description of the REST API");
+  const auto server = std::make_shared<std::string>("http://127.0.0.1:8080");
+  command.add_option("--server", *server, "URL of the server that the description names")
+      ->type_name("URL")
+      ->capture_default_str();
+  command.callback([server, &code] { code = openapi_command(*server); });
+}
+
 int run_program(int argc, char** argv) {
   CLI::App program{
       "citymesh turns 3D city models into closed, 2-manifold, simulation-ready meshes.",
@@ -131,6 +142,8 @@ int run_program(int argc, char** argv) {
   program.add_subcommand("processes", "prints the processes with their inputs and outputs")
       ->callback([&] { code = processes_command(); });
 
+  add_openapi(program, code);
+
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -140,7 +153,7 @@ int run_program(int argc, char** argv) {
   if (program.get_subcommands().empty())
     return could_not_run(fail(ErrorCode::InvalidArgument,
                               "a subcommand is missing, expected one of run, validate, heal, "
-                              "index, serve, processes; --help tells more"));
+                              "index, serve, processes, openapi; --help tells more"));
   return code;
 }
 

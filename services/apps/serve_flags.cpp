@@ -88,6 +88,8 @@ void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> r
   add("--max_open_jobs", options.max_open_jobs, "accepted and running jobs; more are refused");
   add("--max_body_bytes", options.max_body_bytes, "size of a request");
   add("--max_connections", options.max_connections, "REST connections at the same time");
+  add("--sync_wait_s", options.sync_wait_s,
+      "longest wait of a synchronous REST execution, then a job is the answer");
   add("--max_watches", options.max_watches, "gRPC watch streams at the same time");
   add("--log_level", options.log_level, "debug, info, warning or error");
   for (CLI::Option* option : command.get_options())

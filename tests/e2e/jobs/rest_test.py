@@ -6,7 +6,7 @@ import tempfile
 import unittest
 from urllib.parse import urlsplit
 
-from service import (CITY, EXCEPTIONS, EXECUTION, LIMIT_S, OPEN, SEA, ServiceTest, delivered_names, is_closed, make_big_city,
+from service import (CITY, EXCEPTIONS, EXECUTION, LIMIT_S, OPEN, SEA, SMALL, ServiceTest, delivered_names, is_closed, make_big_city,
                      read_obj)
 
 
@@ -71,7 +71,8 @@ class JobCycle(ServiceTest):
             self.assertEqual(first, second, name)
 
     def test_heal_gives_the_city_model_back(self):
-        created = self.service.send("POST", "/processes/heal/execution", {"inputs": {"bbox": CITY}})
+        created = self.service.send("POST", "/processes/heal/execution", {"inputs": {"bbox": CITY}},
+                                    {"Prefer": "respond-async"})
         self.assertEqual(created.status, 201, created.body)
         job = created.headers["Location"]
         status = self.service.wait(job)
@@ -84,6 +85,28 @@ class JobCycle(ServiceTest):
         self.assertTrue(delivered and delivered <= model["CityObjects"].keys())
         self.assertIn("errors.glb", {link["title"] for link in status["links"] if link["rel"] == "item"})
         self.assertEqual(self.service.get(job + "/results/errors_glb").body[:4], b"glTF")
+
+    def test_heal_and_validate_answer_at_once(self):
+        report = self.service.send("POST", "/processes/validate/execution", {"inputs": {"bbox": SMALL}})
+        self.assertEqual(report.status, 200, report.body)
+        self.assertEqual(report.json()["process"], "validate")
+        results = self.service.get(report.headers["Content-Location"]).json()
+        self.assertEqual(self.service.get(results["report"]["href"]).body, report.body)
+        healed = self.service.send("POST", "/processes/heal/execution", {"inputs": {"bbox": SMALL}})
+        self.assertEqual(healed.status, 200, healed.body)
+        values = healed.json()
+        self.assertEqual(set(values), {"report", "cityjson"})
+        self.assertEqual(values["cityjson"]["value"]["type"], "CityJSON")
+
+    def test_events_tell_of_a_job_until_it_has_ended(self):
+        job = self.service.execute({"bbox": CITY})
+        events = self.service.get(job + "/events")
+        self.assertEqual(events.headers["Content-Type"], "text/event-stream")
+        states = [json.loads(line[6:]) for line in events.body.decode().splitlines() if line.startswith("data: ")]
+        self.assertEqual(states[-1]["status"], "successful")
+        self.assertEqual(states[-1]["progress"], 100)
+        last = [line[4:] for line in events.body.decode().splitlines() if line.startswith("id: ")][-1]
+        self.assertEqual(self.service.get(job + "/events", {"Last-Event-ID": last}).status, 204)
 
     def test_errors_glb_is_a_result_where_the_process_writes_it(self):
         job = self.service.execute({"bbox": CITY}, process="validate", outputs={"errors_glb": {}})

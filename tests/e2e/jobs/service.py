@@ -16,6 +16,7 @@ PROGRAM = os.environ.get("CITYMESH_PROGRAM", "citymesh")
 BERLIN = ROOT / "tests" / "data" / "berlin"
 # Longitude and latitude of a part of Berlin Mitte that the data covers, and of the open sea.
 CITY = {"bbox": [13.38, 52.49, 13.43, 52.53]}
+SMALL = {"bbox": [13.400, 52.495, 13.405, 52.500]}
 SEA = {"bbox": [3.0, 55.0, 3.01, 55.01]}
 EXECUTION = "/processes/export-for-simulation/execution"
 EXCEPTIONS = "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/"
@@ -77,7 +78,7 @@ class Service:
 
     def execute(self, inputs, process="export-for-simulation", **more):
         """The URL of a new job."""
-        answer = self.send("POST", f"/processes/{process}/execution", {"inputs": inputs, **more})
+        answer = self.send("POST", f"/processes/{process}/execution", {"inputs": inputs, **more}, {"Prefer": "respond-async"})
         assert answer.status == 201, answer.body
         return answer.headers["Location"]
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the code blocks of the README, as they stand, against a server of our own: only the two addresses and the place of the
+"""Runs the code blocks of the README and of the page about REST, as they stand, against a server of our own: only the two addresses and the place of the
 program are replaced.
 
     readme_test.py CITYMESH
@@ -34,6 +34,7 @@ class Readme(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         blocks = BLOCK.findall((ROOT / "README.md").read_text(encoding="utf-8"))
+        cls.rest_blocks = BLOCK.findall((ROOT / "docs" / "rest.md").read_text(encoding="utf-8"))
         cls.run_block, cls.curl_block, cls.python_block, cls.stubs_block, cls.grpc_block = blocks
         cls.folder = Path(tempfile.mkdtemp(prefix="citymesh-readme-"))
         for name in ("tests", "proto"):
@@ -102,6 +103,20 @@ class Readme(unittest.TestCase):
         self.run_example(self.stubs_block)
         self.assertIn("SUCCESSFUL", self.run_example(self.grpc_block, python))
         self.assertEqual(mesh, (self.folder / "out/grpc/model.obj").read_bytes())
+
+    def test_page_about_rest(self):
+        at_once, as_job, events, download = self.rest_blocks
+        self.assertEqual(json.loads(self.run_example(at_once))["process"], "validate")
+        accepted = self.run_example(as_job)
+        self.assertIn("HTTP/1.1 201", accepted)
+        self.assertIn("Preference-Applied: respond-async", accepted)
+        seen = self.run_example(events)
+        self.assertIn("event: status", seen)
+        self.assertIn('"status":"successful"', seen)
+        self.assertEqual(self.run_example(download).strip(), "304")
+        lines = (self.folder / "out/rest/model.obj").read_text().splitlines()
+        self.assertGreater(len(lines), 20)
+        self.assertTrue(lines[0].startswith("#") and all(line[:2] in ("# ", "o ", "g ", "v ", "f ", "") for line in lines), lines[:3])
 
 
 if __name__ == "__main__":

@@ -46,7 +46,8 @@ TEST(CommandLine, HelpAndVersionAreOnStdoutEverywhere) {
                                                     {"heal", "--help"},
                                                     {"index", "--help"},
                                                     {"serve", "--help"},
-                                                    {"processes", "--help"}}) {
+                                                    {"processes", "--help"},
+                                                    {"openapi", "--help"}}) {
     const auto outcome = citymesh(arguments);
     EXPECT_EQ(outcome.code, 0);
     EXPECT_THAT(outcome.out, HasSubstr("--help"));
@@ -60,6 +61,14 @@ TEST(CommandLine, ListsProcessesWithTheirInputs) {
   EXPECT_EQ(outcome.code, 0);
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("export-for-simulation"), HasSubstr("validate"),
                                  HasSubstr("snap_tolerance_m = 0.001")));
+}
+
+TEST(CommandLine, PrintsTheDescriptionOfTheRestApi) {
+  const auto outcome = citymesh({"openapi", "--server", "https://maps.example/citymesh"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("\"openapi\": \"3.0.3\""), HasSubstr("https://maps.example/citymesh"),
+                    HasSubstr("max_hole_area_m2")));
 }
 
 TEST(CommandLine, WhatCannotRunIsExitCodeTwoAndSaysWhy) {
