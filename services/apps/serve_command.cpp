@@ -1,9 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <iostream>
 #include <memory>
+#include <mutex>
+#include <stop_token>
 #include <thread>
 
 #include "core/base/version.h"
@@ -12,6 +16,7 @@
 #include "services/apps/signals.h"
 #include "services/catalogue/catalogue.h"
 #include "services/jobs/job_manager.h"
+#include "services/jobs/retention.h"
 #include "services/rest/server.h"
 #include "services/rpc/server.h"
 #include "services/stores/embedded_store.h"
@@ -58,6 +63,29 @@ RpcOptions rpc_options(const ServeOptions& options) {
           .port = options.grpc.port,
           .max_message_bytes = static_cast<int>(options.max_body_bytes),
           .max_watches = options.max_watches};
+}
+
+/// Removes what is kept long enough, now and then, until it is stopped.
+std::jthread start_sweeping(EmbeddedStore& store, ResultStore& results, const ServeOptions& options,
+                            Log& log) {
+  const RetentionOptions retention{.keep_results_ms = milliseconds(options.keep_results_s),
+                                   .keep_jobs_ms = milliseconds(options.keep_jobs_s),
+                                   .max_result_bytes = options.max_result_bytes};
+  return std::jthread([&store, &results, &log, retention](const std::stop_token& stop) {
+    constexpr auto kPause = std::chrono::seconds(30);
+    std::mutex mutex;
+    std::condition_variable_any wake;
+    std::unique_lock lock(mutex);
+    do {
+      if (const auto swept = sweep(store, results, retention, now_ms()); !swept)
+        log.error("sweep_failed", {{"message", swept.error().message}});
+      else if (swept->bytes_freed > 0 || swept->jobs_forgotten > 0)
+        log.info("swept", {{"results_expired", swept->results_expired},
+                           {"jobs_forgotten", swept->jobs_forgotten},
+                           {"bytes_freed", swept->bytes_freed}});
+    } while (!wake.wait_for(lock, stop, kPause, [&] { return stop.stop_requested(); }) &&
+             !stop.stop_requested());
+  });
 }
 
 void announce(Log& log, const ServeOptions& options, const Endpoint& rest, const Endpoint& rpc) {
@@ -138,6 +166,7 @@ Result<void> serve(const ServeOptions& options) {
   const auto rpc_port = rpc.start();
   if (!rpc_port) return rpc_port.error();
   workers.start();
+  const auto sweeper = start_sweeping(**store, **results, options, log);
   announce(log, options, {options.listen.host, *rest_port}, {options.grpc.host, *rpc_port});
 
   stop.wait();

@@ -85,6 +85,11 @@ void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> r
   add("--lease_s", options.lease_s, "a worker not heard of for so long counts as dead");
   add("--max_attempts", options.max_attempts, "deaths of a worker after which its job is failed");
   add("--job_timeout_s", options.job_timeout_s, "a job that runs longer is failed; 0: no limit");
+  add("--keep_results_s", options.keep_results_s,
+      "results of an ended job are kept for so long; 0: for ever");
+  add("--keep_jobs_s", options.keep_jobs_s, "an ended job is remembered for so long; 0: for ever");
+  add("--max_result_bytes", options.max_result_bytes,
+      "of all results together, above it the oldest go; 0: no limit");
   add("--max_open_jobs", options.max_open_jobs, "accepted and running jobs; more are refused");
   add("--max_body_bytes", options.max_body_bytes, "size of a request");
   add("--max_connections", options.max_connections, "REST connections at the same time");

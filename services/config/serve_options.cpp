@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <system_error>
+#include <utility>
 
 namespace citymesh {
 namespace {
@@ -76,6 +77,10 @@ Result<void> check(const ServeOptions& options) {
   if (options.max_attempts < 1) return wrong("--max_attempts", options.max_attempts, "1 or more");
   if (!(options.job_timeout_s >= 0) || !std::isfinite(options.job_timeout_s))
     return wrong("--job_timeout_s", options.job_timeout_s, "0 (no limit) or more");
+  for (const auto& [name, kept_s] : {std::pair("--keep_results_s", options.keep_results_s),
+                                     std::pair("--keep_jobs_s", options.keep_jobs_s)})
+    if (!(kept_s >= 0) || !std::isfinite(kept_s))
+      return wrong(name, kept_s, "0 (for ever) or more");
   if (options.max_open_jobs < 1)
     return wrong("--max_open_jobs", options.max_open_jobs, "1 or more");
   if (options.max_body_bytes < 1024 || options.max_body_bytes > (64u << 20))

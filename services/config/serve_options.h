@@ -34,6 +34,10 @@ struct ServeOptions {
   std::uint32_t max_attempts = 3;  ///< deaths of a worker after which its job is failed
   double job_timeout_s = 0;        ///< a job that runs longer is failed; 0: no limit
 
+  double keep_results_s = 7 * 86400;   ///< after a job's end; 0: for ever
+  double keep_jobs_s = 30 * 86400;     ///< the record of an ended job; 0: for ever
+  std::uint64_t max_result_bytes = 0;  ///< of all jobs; the oldest results go first; 0: no limit
+
   std::uint32_t max_open_jobs = 1000;      ///< accepted and running; more are refused
   std::uint64_t max_body_bytes = 1 << 20;  ///< of a request, REST and gRPC
   std::uint32_t max_connections = 1024;    ///< REST

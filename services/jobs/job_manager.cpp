@@ -10,6 +10,7 @@
 
 #include "core/pipeline/pipeline.h"
 #include "core/write/write.h"
+#include "services/jobs/retention.h"
 
 namespace citymesh {
 namespace {
@@ -145,6 +146,8 @@ Result<std::vector<ResultFile>> JobManager::results(const std::string& id) {
   if (!job) return job.error();
   switch (job->state) {
     case JobState::Successful:
+      if (has_expired(*job))
+        return fail(ErrorCode::NotFound, fmt::format("job {}: its {}", id, job->message));
       return std::move(job->results);
     case JobState::Failed:
       return fail(ErrorCode::FailedPrecondition,

@@ -46,7 +46,7 @@ class JobManager {
   /// The same without waiting for the worker.
   Result<Job> request_dismissal(const std::string& id);
 
-  /// FailedPrecondition (not ready, failed, dismissed) unless successful.
+  /// FailedPrecondition (not ready, failed, dismissed) unless successful; NotFound when expired.
   Result<std::vector<ResultFile>> results(const std::string& id);
   Result<std::string> read_result(const std::string& id, const std::string& file_name,
                                   std::uint64_t offset, std::uint64_t max_bytes);

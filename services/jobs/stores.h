@@ -40,6 +40,15 @@ class JobStore {
                                     int percent) = 0;
   virtual Result<void> erase(const std::string& id) = 0;
 
+  // What ended jobs leave behind, for retention.
+
+  /// Jobs that ended before `time`, oldest first; `with_results`: only those that have some.
+  virtual Result<std::vector<Job>> ended_before(TimeMs time, bool with_results,
+                                                std::uint32_t limit) = 0;
+  virtual Result<std::uint64_t> result_bytes() = 0;  ///< of all jobs together
+  /// The list of results of an ended job becomes empty. FailedPrecondition for an open job.
+  virtual Result<Job> drop_results(const std::string& id, std::string_view message) = 0;
+
   /// Tells of every change made through this object. Another process may change jobs unheard.
   JobFeed& changes() { return changes_; }
 

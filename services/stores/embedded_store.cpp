@@ -1,7 +1,6 @@
 #include "services/stores/embedded_store.h"
 
 #include <fmt/format.h>
-#include <sqlite3.h>
 
 #include <algorithm>
 #include <chrono>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "services/sqlite/sqlite.h"
+#include "services/stores/job_rows.h"
 
 namespace citymesh {
 namespace {
@@ -17,58 +17,10 @@ using nlohmann::json;
 using sqlite::Connection;
 using sqlite::Durability;
 using sqlite::Failure;
-using sqlite::Query;
 using sqlite::Transaction;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::int64_t kApplicationId = 0x63'74'6d'73;  // "ctms", in the header of the file
-constexpr std::int64_t kSchemaVersion = 1;
 constexpr auto kQueuePoll = std::chrono::milliseconds(200);  // for tasks other processes push
-
-// A task is a job that nobody has finished. `worker` is the last holder and `lease_until` when it
-// must have been heard of; a free task has an empty worker, one whose worker died keeps its name.
-constexpr const char* kSchema = R"sql(
-  CREATE TABLE job (
-    id TEXT PRIMARY KEY,
-    process TEXT NOT NULL,
-    inputs TEXT NOT NULL,
-    outputs TEXT NOT NULL,
-    response_document INTEGER NOT NULL,
-    state TEXT NOT NULL,
-    message TEXT NOT NULL,
-    stage TEXT NOT NULL,
-    done INTEGER NOT NULL,
-    total INTEGER NOT NULL,
-    percent INTEGER NOT NULL,
-    error_code TEXT NOT NULL,
-    error_message TEXT NOT NULL,
-    attempt INTEGER NOT NULL,
-    dismiss_requested INTEGER NOT NULL,
-    created INTEGER NOT NULL,
-    updated INTEGER NOT NULL,
-    started INTEGER,
-    finished INTEGER,
-    results TEXT NOT NULL
-  ) STRICT;
-  CREATE INDEX job_by_time ON job (created DESC);
-  CREATE INDEX job_open ON job (state) WHERE state IN ('accepted', 'running');
-  CREATE TABLE task (
-    seq INTEGER PRIMARY KEY AUTOINCREMENT,
-    job_id TEXT NOT NULL UNIQUE REFERENCES job (id) ON DELETE CASCADE,
-    worker TEXT NOT NULL DEFAULT '',
-    attempt INTEGER NOT NULL DEFAULT 0,
-    lease_until INTEGER NOT NULL DEFAULT 0,
-    deaths INTEGER NOT NULL DEFAULT 0
-  ) STRICT;
-)sql";
-
-#define CITYMESH_JOB_COLUMNS                                                                      \
-  "id, process, inputs, outputs, response_document, state, message, stage, done, total, percent," \
-  " error_code, error_message, attempt, dismiss_requested, created, updated, started, finished,"  \
-  " results"
-#define CITYMESH_JOB_FILTER                                                     \
-  " FROM job WHERE (?1 = '[]' OR process IN (SELECT value FROM json_each(?1)))" \
-  " AND (?2 = '[]' OR state IN (SELECT value FROM json_each(?2)))"
 
 constexpr std::string_view kDatabase = "job database";
 
@@ -85,112 +37,6 @@ auto guarded(const Work& work) -> decltype(work()) {
   }
 }
 
-std::string dump(const json& value) {
-  return value.dump(-1, ' ', false, json::error_handler_t::replace);
-}
-
-std::string outputs_text(const JobSpec& spec) {
-  auto outputs = json::object();
-  for (const auto& [output, transmission] : spec.outputs)
-    outputs[output] = transmission == Transmission::Value ? "value" : "reference";
-  return dump(outputs);
-}
-
-std::string results_text(const std::vector<ResultFile>& files) {
-  auto results = json::array();
-  for (const auto& file : files)
-    results.push_back({{"output", file.output},
-                       {"file_name", file.file_name},
-                       {"media_type", file.media_type},
-                       {"bytes", file.bytes}});
-  return dump(results);
-}
-
-ErrorCode error_code_from(std::string_view name) {
-  for (auto code = ErrorCode{}; code != ErrorCode::Internal;
-       code = static_cast<ErrorCode>(static_cast<int>(code) + 1))
-    if (to_string(code) == name) return code;
-  return ErrorCode::Internal;
-}
-
-Job read_job(const Query& row) {
-  Job job;
-  job.id = row.text(0);
-  job.spec.process = row.text(1);
-  job.spec.inputs_json = row.text(2);
-  const auto outputs = json::parse(row.text(3));
-  for (const auto& [output, transmission] : outputs.items())
-    job.spec.outputs[output] =
-        transmission == "value" ? Transmission::Value : Transmission::Reference;
-  job.spec.response_document = row.number(4) != 0;
-  job.state = job_state_from(row.text(5)).value_or(JobState::Failed);
-  job.message = row.text(6);
-  job.progress.stage = row.text(7);
-  job.progress.done = static_cast<std::uint64_t>(row.number(8));
-  job.progress.total = static_cast<std::uint64_t>(row.number(9));
-  job.percent = static_cast<int>(row.number(10));
-  if (const auto code = row.text(11); !code.empty())
-    job.error = Error{error_code_from(code), row.text(12)};
-  job.attempt = static_cast<std::uint32_t>(row.number(13));
-  job.dismiss_requested = row.number(14) != 0;
-  job.created = row.number(15);
-  job.updated = row.number(16);
-  job.started = row.optional_number(17);
-  job.finished = row.optional_number(18);
-  const auto results = json::parse(row.text(19));
-  for (const auto& file : results)
-    job.results.push_back(
-        {file.at("output"), file.at("file_name"), file.at("media_type"), file.at("bytes")});
-  return job;
-}
-
-void bind_job(Query& query, const Job& job) {
-  query.bind(1, job.id)
-      .bind(2, job.spec.process)
-      .bind(3, job.spec.inputs_json)
-      .bind(4, outputs_text(job.spec))
-      .bind(5, std::int64_t{job.spec.response_document})
-      .bind(6, to_string(job.state))
-      .bind(7, job.message)
-      .bind(8, job.progress.stage)
-      .bind(9, static_cast<std::int64_t>(job.progress.done))
-      .bind(10, static_cast<std::int64_t>(job.progress.total))
-      .bind(11, std::int64_t{job.percent})
-      .bind(12, job.error ? to_string(job.error->code) : std::string_view())
-      .bind(13, job.error ? std::string_view(job.error->message) : std::string_view())
-      .bind(14, std::int64_t{job.attempt})
-      .bind(15, std::int64_t{job.dismiss_requested})
-      .bind(16, job.created)
-      .bind(17, job.updated)
-      .bind(18, job.started)
-      .bind(19, job.finished)
-      .bind(20, results_text(job.results));
-}
-
-std::optional<Job> find_job(Connection& connection, const std::string& id) {
-  auto row = connection.query("SELECT " CITYMESH_JOB_COLUMNS " FROM job WHERE id = ?1");
-  row.bind(1, id);
-  if (!row.step()) return std::nullopt;
-  return read_job(row);
-}
-
-/// Stores a changed job; `updated` grows by at least one, so that no watcher misses a change.
-void write_job(Connection& connection, Job& job, const char* verb) {
-  job.updated = std::max(now_ms(), job.updated + 1);
-  auto query = connection.query(verb);
-  bind_job(query, job);
-  query.run();
-}
-
-constexpr const char* kInsertJob =
-    "INSERT INTO job (" CITYMESH_JOB_COLUMNS
-    ") VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18,"
-    " ?19, ?20)";
-constexpr const char* kUpdateJob =
-    "UPDATE job SET (" CITYMESH_JOB_COLUMNS
-    ") = (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19,"
-    " ?20) WHERE id = ?1";
-
 Error no_such_job(const std::string& id) {
   return fail(ErrorCode::NotFound, fmt::format("job '{}' does not exist", id));
 }
@@ -204,39 +50,8 @@ Error lease_lost(const Claim& claim) {
 std::pair<std::string, std::string> filter_texts(const JobFilter& filter) {
   auto states = json::array();
   for (const auto state : filter.states) states.push_back(to_string(state));
-  return {dump(json(filter.processes)), dump(states)};
-}
-
-/// Creates the tables of a new database or says why an existing one is not ours.
-std::optional<Error> prepare_schema(Connection& connection, const std::filesystem::path& file) {
-  const auto refuse = [&](ErrorCode code, const std::string& why) {
-    return fail(code, fmt::format("job database '{}' {}", file.string(), why));
-  };
-  connection.run("PRAGMA journal_mode = WAL");
-  Transaction transaction(connection, Durability::Full);
-  const auto application = connection.value("PRAGMA application_id");
-  const auto version = connection.value("PRAGMA user_version");
-  const auto tables = connection.value("SELECT count(*) FROM sqlite_schema");
-  if (application == 0 && version == 0 && tables == 0) {
-    connection.run(kSchema);
-    connection.run(fmt::format("PRAGMA application_id = {}", kApplicationId).c_str());
-    connection.run(fmt::format("PRAGMA user_version = {}", kSchemaVersion).c_str());
-    transaction.commit();
-    return std::nullopt;
-  }
-  if (application != kApplicationId)
-    return refuse(ErrorCode::DataLoss, "is not a job database of citymesh");
-  if (version > kSchemaVersion)
-    return refuse(ErrorCode::FailedPrecondition,
-                  fmt::format("has schema version {}, written by a newer citymesh; this one knows "
-                              "versions up to {}",
-                              version, kSchemaVersion));
-  auto findings = connection.query("PRAGMA quick_check(1)");
-  if (findings.step() && findings.text(0) != "ok")
-    return refuse(
-        ErrorCode::DataLoss,
-        fmt::format("is damaged ({}); move it away to start with an empty one", findings.text(0)));
-  return std::nullopt;
+  return {json(filter.processes).dump(-1, ' ', false, json::error_handler_t::replace),
+          states.dump()};
 }
 
 }  // namespace
@@ -300,11 +115,7 @@ Result<void> EmbeddedStore::insert(const Job& job) {
     if (find_job(writer, job.id))
       return fail(ErrorCode::AlreadyExists, fmt::format("job '{}' exists already", job.id));
     Transaction transaction(writer, Durability::Full);
-    {
-      auto query = writer.query(kInsertJob);
-      bind_job(query, job);
-      query.run();
-    }
+    insert_job(writer, job);
     transaction.commit();
     return {};
   });
@@ -335,6 +146,51 @@ Result<std::vector<Job>> EmbeddedStore::list(const JobFilter& filter) {
     while (rows.step()) jobs.push_back(read_job(rows));
     return jobs;
   });
+}
+
+Result<std::vector<Job>> EmbeddedStore::ended_before(TimeMs time, bool with_results,
+                                                     std::uint32_t limit) {
+  return guarded([&]() -> Result<std::vector<Job>> {
+    const std::scoped_lock lock(connections_->reader_mutex);
+    auto rows = connections_->reader.query(
+        "SELECT " CITYMESH_JOB_COLUMNS
+        " FROM job WHERE finished < ?1 AND state NOT IN ('accepted', 'running')"
+        " AND (NOT ?2 OR results <> '[]') ORDER BY finished, rowid LIMIT ?3");
+    rows.bind(1, time).bind(2, std::int64_t{with_results}).bind(3, std::int64_t{limit});
+    std::vector<Job> jobs;
+    while (rows.step()) jobs.push_back(read_job(rows));
+    return jobs;
+  });
+}
+
+Result<std::uint64_t> EmbeddedStore::result_bytes() {
+  return guarded([&]() -> Result<std::uint64_t> {
+    const std::scoped_lock lock(connections_->reader_mutex);
+    return static_cast<std::uint64_t>(
+        connections_->reader.value("SELECT ifnull(sum(json_extract(file.value, '$.bytes')), 0)"
+                                   " FROM job, json_each(job.results) AS file"));
+  });
+}
+
+Result<Job> EmbeddedStore::drop_results(const std::string& id, std::string_view message) {
+  auto dropped = guarded([&]() -> Result<Job> {
+    const std::scoped_lock lock(connections_->writer_mutex);
+    auto& writer = connections_->writer;
+    Transaction transaction(writer, Durability::Full);
+    auto job = find_job(writer, id);
+    if (!job) return no_such_job(id);
+    if (!is_final(job->state))
+      return fail(
+          ErrorCode::FailedPrecondition,
+          fmt::format("job {} is {}, expected one that has ended", id, to_string(job->state)));
+    job->results.clear();
+    job->message = message;
+    write_job(writer, *job);
+    transaction.commit();
+    return *std::move(job);
+  });
+  if (dropped) changes().publish(*dropped);
+  return dropped;
 }
 
 Result<std::uint64_t> EmbeddedStore::count(const JobFilter& filter) {
@@ -372,7 +228,7 @@ Result<Job> EmbeddedStore::update(const std::string& id, std::optional<std::uint
                               *attempt, job->attempt));
     change(*job);
     job->id = id;
-    write_job(writer, *job, kUpdateJob);
+    write_job(writer, *job);
     transaction.commit();
     return *std::move(job);
   });
@@ -395,7 +251,7 @@ Result<void> EmbeddedStore::set_progress(const std::string& id, std::uint32_t at
     current->progress = progress;
     current->message = message;
     current->percent = percent;
-    write_job(writer, *current, kUpdateJob);
+    write_job(writer, *current);
     transaction.commit();
     return *std::move(current);
   });
@@ -488,7 +344,7 @@ Result<std::optional<Claim>> EmbeddedStore::claim_now(const std::string& worker,
         } else {
           ++job->attempt;
         }
-        write_job(writer, *job, kUpdateJob);
+        write_job(writer, *job);
         changed = job;
         if (!is_final(job->state)) {
           writer

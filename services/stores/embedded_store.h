@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "services/jobs/stores.h"
@@ -42,6 +43,10 @@ class EmbeddedStore final : public JobStore, public TaskQueue {
                             const JobProgress& progress, std::string_view message,
                             int percent) override;
   Result<void> erase(const std::string& id) override;
+  Result<std::vector<Job>> ended_before(TimeMs time, bool with_results,
+                                        std::uint32_t limit) override;
+  Result<std::uint64_t> result_bytes() override;
+  Result<Job> drop_results(const std::string& id, std::string_view message) override;
 
   Result<void> push(const std::string& job_id) override;
   Result<std::optional<Claim>> claim(const std::string& worker, TimeMs lease_ms,
