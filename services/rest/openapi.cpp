@@ -116,6 +116,11 @@ Json schemas() {
       {"output", object({{"transmissionMode", one_of({"value", "reference"})},
                          {"format", object({{"mediaType", text()}}, {})}},
                         {})},
+      {"qualifiedValue", object({{"value", Json::object()},
+                                 {"mediaType", text()},
+                                 {"encoding", text()},
+                                 {"schema", Json::object()}},
+                                {"value"})},
       {"statusInfo",
        object({{"processID", text()},
                {"type", one_of({"process"})},
@@ -158,11 +163,21 @@ Json header(std::string_view description, Json schema) {
 Json url() { return {{"type", "string"}, {"format", "uri"}}; }
 Json binary() { return {{"type", "string"}, {"format", "binary"}}; }
 
+/// A file of any output: JSON of any form, or bytes.
+Json file_content() {
+  Json forms = Json::object();
+  for (const auto& process : processes())
+    for (const auto& output : process.outputs)
+      if (is_json(output)) forms[std::string(output.media_type)]["schema"] = Json::object();
+  forms["*/*"]["schema"] = binary();
+  return forms;
+}
+
 /// Results in every form that a request can ask for.
 Json result_answers() {
-  Json forms = content("application/json", schema_ref("results"));
-  forms["multipart/related"] = {{"schema", text()}};
-  forms["*/*"] = {{"schema", binary()}};
+  auto forms = file_content();
+  forms["application/json"]["schema"] = schema_ref("results");
+  forms["multipart/related"]["schema"] = text();
   return {{"200",
            {{"description", "A document of values and links, or raw values"},
             {"content", std::move(forms)}}},
@@ -205,8 +220,9 @@ Json result_operation(const Json& job_id) {
   const auto etag = header("Names this file; it never changes", text());
   Json whole = {{"description", "The file"},
                 {"headers", {{"ETag", etag}, {"Accept-Ranges", header("`bytes`", text())}}},
-                {"content", content("*/*", binary())}};
+                {"content", file_content()}};
   Json part = whole;
+  part["content"] = content("*/*", binary());
   part["description"] = "The range asked for";
   part["headers"]["Content-Range"] = header("`bytes first-last/size`", text());
   return operation(

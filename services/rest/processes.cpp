@@ -77,11 +77,7 @@ std::string title_of(std::string_view name) {
 }
 
 Json output_schema(const OutputSpec& output) {
-  const bool json_object =
-      output.media_type == "application/json" || output.media_type.ends_with("+json");
-  Json schema = {{"type", json_object ? "object" : "string"},
-                 {"contentMediaType", output.media_type}};
-  return schema;
+  return {{"type", is_json(output) ? "object" : "string"}, {"contentMediaType", output.media_type}};
 }
 
 std::string process_url(std::string_view base, const ProcessSpec& process) {
@@ -106,6 +102,10 @@ Json summary(std::string_view base, const ProcessSpec& process) {
 }
 
 }  // namespace
+
+bool is_json(const OutputSpec& output) {
+  return output.media_type == "application/json" || output.media_type.ends_with("+json");
+}
 
 std::string process_list_json(std::string_view base, std::size_t limit, std::size_t offset) {
   const auto all = processes();
@@ -141,9 +141,14 @@ std::string process_description_json(std::string_view base, const ProcessSpec& p
 std::string inputs_schema_json(const ProcessSpec& process) {
   Json properties = Json::object();
   for (const auto& option : process.inputs) {
-    auto schema = schema_of(option);
-    schema["description"] = option.description;
-    properties[std::string(option.name)] = std::move(schema);
+    auto plain = schema_of(option);
+    auto& input = properties[std::string(option.name)] = {{"description", option.description}};
+    if (plain.contains("default")) {
+      input["default"] = plain["default"];
+      plain.erase("default");
+    }
+    input["oneOf"] =
+        Json::array({std::move(plain), Json{{"$ref", "#/components/schemas/qualifiedValue"}}});
   }
   return dump(Json{
       {"type", "object"}, {"additionalProperties", false}, {"properties", std::move(properties)}});

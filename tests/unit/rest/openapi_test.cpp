@@ -192,6 +192,24 @@ TEST_F(OpenApi, DescribesWhatTheServerAnswers) {
   });
 }
 
+TEST_F(OpenApi, OutputsThatAreJsonAreDescribedAsJsonAndOthersAsBytes) {
+  const auto& file = definition_["paths"]["/jobs/{jobID}/results/{output}"]["get"]["responses"];
+  const auto& content = file["200"]["content"];
+  EXPECT_EQ(content["*/*"]["schema"]["format"], "binary");
+  EXPECT_EQ(content["application/json"]["schema"], json::object());
+  EXPECT_EQ(content["application/city+json"]["schema"], json::object());
+  EXPECT_FALSE(content.contains("model/obj"));
+  EXPECT_EQ(file["206"]["content"].size(), 1U) << "a piece of JSON is none";
+}
+
+TEST_F(OpenApi, InputsMayBePlainOrQualified) {
+  const auto& input = definition_["components"]["schemas"]["execute-heal"]["properties"]["inputs"]
+                                 ["properties"]["snap_tolerance_m"];
+  EXPECT_EQ(input["default"], 0.001);
+  EXPECT_EQ(input["oneOf"][0]["type"], "number");
+  EXPECT_EQ(input["oneOf"][1]["$ref"], "#/components/schemas/qualifiedValue");
+}
+
 TEST_F(OpenApi, ProcessesAreDescribedWithTheirOwnWaysOfExecution) {
   for (const auto& process : processes()) {
     const auto id = std::string(process.id);
