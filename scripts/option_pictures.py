@@ -91,7 +91,7 @@ PICTURES = {
                                                     ("snap_tolerance_m=0.4", "max_displacement_m=1")]),
     "max_hole_area_m2": (city(without("east")), [("max_hole_area_m2=1",), ("max_hole_area_m2=10000",)]),
     "on_failure": (footprint(), [("on_failure=block",), ("on_failure=drop",)]),
-    "parts": (city(without("west"), box(3.0, 3.0, 4.0, 4.0)), [("parts=keep",), ("parts=merge",)]),
+    "parts": (city(without("west"), box(1.6, 1.6, 4.2, 2.9)), [("parts=keep",), ("parts=merge",)]),
 }
 
 

@@ -66,6 +66,7 @@ constexpr std::array kIssueNames{
     IssueName{issue_code::kNarrowGap, "C118 NARROW_GAP"},
     IssueName{issue_code::kFootprintTurned, "C119 FOOTPRINT_TURNED"},
     IssueName{issue_code::kPartsNotMerged, "C120 PARTS_NOT_MERGED"},
+    IssueName{issue_code::kPartsOverlap, "C121 PARTS_STILL_OVERLAP"},
 };
 
 static_assert(std::is_sorted(kIssueNames.begin(), kIssueNames.end(),
@@ -89,7 +90,8 @@ std::string issue_code_text(int code) {
 
 bool is_defect(int code) {
   return code != issue_code::kNearDuplicateWall && code != issue_code::kNarrowGap &&
-         code != issue_code::kPartsNotMerged && code != issue_code::kFootprintTurned;
+         code != issue_code::kPartsNotMerged && code != issue_code::kPartsOverlap &&
+         code != issue_code::kFootprintTurned;
 }
 
 }  // namespace citymesh

@@ -54,13 +54,14 @@ inline constexpr int kNarrowGap = 10118;
 inline constexpr int kFootprintTurned = 10119;
 // Found after healing.
 inline constexpr int kPartsNotMerged = 10120;
+inline constexpr int kPartsOverlap = 10121;
 }  // namespace issue_code
 
 /// "203 NON_PLANAR_POLYGON_DISTANCE_PLANE", "C101 DANGLING_XLINK"; the names of docs/issues.
 std::string_view issue_name(int code);
 std::string issue_code_text(int code);  ///< "203", "C101"
 
-/// Whether a building with it is defective; C117 to C120 are worth knowing, but break no
+/// Whether a building with it is defective; C117 to C121 are worth knowing, but break no
 /// rule of ISO 19107.
 bool is_defect(int code);
 

@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include "core/base/union_find.h"
 #include "core/geometry/around_edge.h"
-#include "core/geometry/arrangement.h"
+#include "core/geometry/cells.h"
 #include "core/geometry/predicates.h"
 
 namespace citymesh {
@@ -97,70 +96,62 @@ double solid_angle(const Point3& a, const Point3& b, const Point3& c) {
          (2 * std::numbers::pi);
 }
 
-class Cells {
+class Count {
  public:
-  Cells(const Arrangement& arrangement, std::span<const std::int8_t> weights)
+  Count(const Arrangement& arrangement, const std::vector<std::uint32_t>& cell_of_side,
+        const std::vector<std::vector<std::uint32_t>>& facets_of_cell,
+        const std::vector<std::uint32_t>& set_of_facet, std::span<const std::int8_t> weights)
       : arrangement_(arrangement),
-        sides_(arrangement.facets.size() * 2),
-        facets_(arrangement.facets.size()) {
+        cell_of_side_(cell_of_side),
+        facets_of_cell_(facets_of_cell),
+        set_of_facet_(set_of_facet),
+        of_cell_(facets_of_cell.size()) {
     net_.reserve(arrangement.facets.size());
     for (const auto& covers : arrangement.covers) net_.push_back(net_weight(covers, weights));
-    for (auto& [edge, fan] : edge_fans(arrangement.facets)) {
-      sort_around(arrangement.points, edge.first, edge.second, fan);
-      for (std::size_t i = 0; i < fan.size(); ++i) {
-        const EdgeFacet &s = fan[i], &t = fan[(i + 1) % fan.size()];
-        sides_.join(2 * s.facet + (s.forward ? 0u : 1u), 2 * t.facet + (t.forward ? 1u : 0u));
-        facets_.join(s.facet, t.facet);
-      }
-    }
   }
 
   WindingNumbers numbers() {
     WindingNumbers result;
-    const auto count = static_cast<std::uint32_t>(arrangement_.facets.size());
-    std::map<std::uint32_t, double> of_cell;
-    result.exact = count_crossings(of_cell);
-    if (!result.exact) measure_angles(of_cell);
-    for (std::uint32_t f = 0; f < count; ++f) {
-      result.front.push_back(of_cell[sides_.root(2 * f)]);
-      result.back.push_back(of_cell[sides_.root(2 * f + 1)]);
+    result.exact = count_crossings();
+    if (!result.exact) measure_angles();
+    for (std::size_t f = 0; f < net_.size(); ++f) {
+      result.front.push_back(of_cell_[cell_of_side_[2 * f]]);
+      result.back.push_back(of_cell_[cell_of_side_[2 * f + 1]]);
     }
     return result;
   }
 
  private:
   /// From one ray per connected set of facets to all its cells; false when they do not agree.
-  bool count_crossings(std::map<std::uint32_t, double>& of_cell) {
-    const auto count = static_cast<std::uint32_t>(arrangement_.facets.size());
-    std::map<std::uint32_t, std::vector<std::uint32_t>> facets_of_cell;
-    for (std::uint32_t f = 0; f < count; ++f) {
-      facets_of_cell[sides_.root(2 * f)].push_back(f);
-      facets_of_cell[sides_.root(2 * f + 1)].push_back(f);
-    }
+  bool count_crossings() {
+    const auto count = static_cast<std::uint32_t>(net_.size());
     const Ray ray(arrangement_, net_);
-    std::vector<char> seen(count, 0);
+    std::vector<char> seen(count, 0), known(of_cell_.size(), 0);
     for (std::uint32_t seed = 0; seed < count; ++seed) {
-      if (seen[facets_.root(seed)]) continue;
-      seen[facets_.root(seed)] = 1;
+      if (seen[set_of_facet_[seed]]) continue;
+      seen[set_of_facet_[seed]] = 1;
       const Ray::Start start = ray.from(seed);
-      std::vector<std::uint32_t> stack{sides_.root(2 * seed + (start.front ? 0u : 1u))};
-      of_cell[stack[0]] = start.winding;
+      std::vector<std::uint32_t> stack{cell_of_side_[2 * seed + (start.front ? 0u : 1u)]};
+      of_cell_[stack[0]] = start.winding;
+      known[stack[0]] = 1;
       while (!stack.empty()) {
         const std::uint32_t cell = stack.back();
         stack.pop_back();
-        for (const std::uint32_t f : facets_of_cell[cell]) {
-          const std::uint32_t front = sides_.root(2 * f), back = sides_.root(2 * f + 1);
+        for (const std::uint32_t f : facets_of_cell_[cell]) {
+          const std::uint32_t front = cell_of_side_[2 * f], back = cell_of_side_[2 * f + 1];
           if (front == back) {
             if (net_[f] != 0) return false;
             continue;
           }
           const std::uint32_t other = cell == front ? back : front;
-          const double winding = of_cell[cell] + (cell == front ? net_[f] : -net_[f]);
-          const auto [at, added] = of_cell.emplace(other, winding);
-          if (added)
-            stack.push_back(other);
-          else if (at->second != winding)
-            return false;
+          const double winding = of_cell_[cell] + (cell == front ? net_[f] : -net_[f]);
+          if (known[other]) {
+            if (of_cell_[other] != winding) return false;
+            continue;
+          }
+          known[other] = 1;
+          of_cell_[other] = winding;
+          stack.push_back(other);
         }
       }
     }
@@ -168,24 +159,23 @@ class Cells {
   }
 
   /// Means of the generalised winding number just off the largest facets of each cell.
-  void measure_angles(std::map<std::uint32_t, double>& of_cell) {
+  void measure_angles() {
     constexpr std::size_t kSamplesPerCell = 24;
     constexpr double kOffset = 20;  // steps: 2 mm off the facet
-    of_cell.clear();
-    const auto count = static_cast<std::uint32_t>(arrangement_.facets.size());
     struct Sample {
       double area;
       std::uint32_t side;
     };
-    std::map<std::uint32_t, std::vector<Sample>> samples;
-    for (std::uint32_t f = 0; f < count; ++f) {
+    std::vector<std::vector<Sample>> samples(of_cell_.size());
+    for (std::uint32_t f = 0; f < net_.size(); ++f) {
       const Triangle& t = arrangement_.facets[f];
       const Point3 n = normal_of(point(t[0]), point(t[1]), point(t[2]));
       const double area = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
       for (const std::uint32_t side : {2 * f, 2 * f + 1})
-        samples[sides_.root(side)].push_back({area, side});
+        samples[cell_of_side_[side]].push_back({area, side});
     }
-    for (auto& [cell, all] : samples) {
+    for (std::size_t cell = 0; cell < samples.size(); ++cell) {
+      std::vector<Sample>& all = samples[cell];
       std::sort(all.begin(), all.end(), [](const Sample& s, const Sample& t) {
         return s.area != t.area ? s.area > t.area : s.side < t.side;
       });
@@ -195,7 +185,7 @@ class Cells {
         sum += sample.area * generalised(sample.side, sample.area, kOffset);
         weight += sample.area;
       }
-      of_cell[cell] = sum / weight;
+      of_cell_[cell] = sum / weight;
     }
   }
 
@@ -224,15 +214,47 @@ class Cells {
   const GridPoint& point(std::uint32_t i) const { return arrangement_.points[i]; }
 
   const Arrangement& arrangement_;
+  const std::vector<std::uint32_t>& cell_of_side_;
+  const std::vector<std::vector<std::uint32_t>>& facets_of_cell_;
+  const std::vector<std::uint32_t>& set_of_facet_;
   std::vector<double> net_;  ///< weight of each facet along its own orientation
-  UnionFind sides_, facets_;
+  std::vector<double> of_cell_;
 };
 
 }  // namespace
 
+Cells::Cells(const Arrangement& arrangement) : arrangement_(arrangement) {
+  const auto count = static_cast<std::uint32_t>(arrangement.facets.size());
+  UnionFind sides(2 * std::size_t{count}), facets(count);
+  for (auto& [edge, fan] : edge_fans(arrangement.facets)) {
+    sort_around(arrangement.points, edge.first, edge.second, fan);
+    for (std::size_t i = 0; i < fan.size(); ++i) {
+      const EdgeFacet &s = fan[i], &t = fan[(i + 1) % fan.size()];
+      sides.join(2 * s.facet + (s.forward ? 0u : 1u), 2 * t.facet + (t.forward ? 1u : 0u));
+      facets.join(s.facet, t.facet);
+    }
+  }
+  constexpr std::uint32_t kNone = ~0u;
+  std::vector<std::uint32_t> cell_of_root(2 * std::size_t{count}, kNone);
+  for (std::uint32_t side = 0; side < 2 * count; ++side) {
+    std::uint32_t& cell = cell_of_root[sides.root(side)];
+    if (cell == kNone) {
+      cell = static_cast<std::uint32_t>(facets_of_cell_.size());
+      facets_of_cell_.emplace_back();
+    }
+    cell_of_side_.push_back(cell);
+    facets_of_cell_[cell].push_back(side / 2);
+  }
+  for (std::uint32_t f = 0; f < count; ++f) set_of_facet_.push_back(facets.root(f));
+}
+
+WindingNumbers Cells::winding(std::span<const std::int8_t> weights) const {
+  return Count(arrangement_, cell_of_side_, facets_of_cell_, set_of_facet_, weights).numbers();
+}
+
 WindingNumbers winding_numbers(const Arrangement& arrangement,
                                std::span<const std::int8_t> weights) {
-  return Cells(arrangement, weights).numbers();
+  return Cells(arrangement).winding(weights);
 }
 
 }  // namespace citymesh

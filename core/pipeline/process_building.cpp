@@ -13,6 +13,7 @@
 #include "core/mesh/mesh.h"
 #include "core/pipeline/merge_parts.h"
 #include "core/pipeline/round_trip_gate.h"
+#include "core/pipeline/separate_parts.h"
 #include "core/validate/validate.h"
 
 namespace citymesh {
@@ -200,6 +201,8 @@ ProcessedBuilding process_building(const NamedBuilding& named, const Inputs& inp
   report.reason.clear();
   if (inputs.merge_parts)
     merge_parts(building, report, bodies, processed.fingerprints, inputs, formats, context);
+  else
+    separate_parts(report, bodies, processed.fingerprints, inputs, formats, context);
   processed.bodies = BuildingBodies{building.gml_id, report.rung, building.attributes,
                                     building.addresses, std::move(bodies)};
   return processed;

@@ -1,10 +1,15 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "core/base/union_find.h"
 #include "core/geometry/around_edge.h"
+#include "core/geometry/box_tree.h"
+#include "core/geometry/measure.h"
 #include "core/geometry/outline.h"
+#include "core/geometry/predicates.h"
 #include "core/geometry/triangulation.h"
 #include "core/reconstruct/boundary.h"
 
@@ -17,11 +22,34 @@ double length(const Point3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * 
 
 double dot(const Point3& a, const Point3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
+bool is_shared(const SolidBoundary& boundary, std::uint32_t f) {
+  return !boundary.shared.empty() && boundary.shared[f];
+}
+
+/// Whether all corners lie in one plane wherever coordinates are rounded to: a plane across an
+/// axis, or an upright one between two columns of corners.
+bool is_plane_for_all(const std::vector<GridPoint>& points, const std::vector<Ring>& rings) {
+  const GridPoint &first = points[rings[0][0]], *second = nullptr;
+  bool x = true, y = true, z = true, columns = true;
+  for (const Ring& ring : rings)
+    for (const std::uint32_t v : ring) {
+      const GridPoint& p = points[v];
+      x = x && p.x == first.x;
+      y = y && p.y == first.y;
+      z = z && p.z == first.z;
+      if (p.x == first.x && p.y == first.y) continue;
+      if (!second) second = &p;
+      columns = columns && p.x == second->x && p.y == second->y;
+    }
+  return x || y || z || columns;
+}
+
 /// Triangles of one parent, connected across edges that only two triangles share.
 std::map<std::uint32_t, std::vector<std::uint32_t>> regions_of(const SolidBoundary& boundary) {
   UnionFind sets(boundary.triangles.size());
   for (const auto& [edge, fan] : edge_fans(boundary.triangles))
-    if (fan.size() == 2 && boundary.parents[fan[0].facet] == boundary.parents[fan[1].facet])
+    if (fan.size() == 2 && boundary.parents[fan[0].facet] == boundary.parents[fan[1].facet] &&
+        is_shared(boundary, fan[0].facet) == is_shared(boundary, fan[1].facet))
       sets.join(fan[0].facet, fan[1].facet);
   std::map<std::uint32_t, std::vector<std::uint32_t>> regions;
   for (std::uint32_t f = 0; f < boundary.triangles.size(); ++f) regions[sets.root(f)].push_back(f);
@@ -41,6 +69,7 @@ std::vector<Ring> polygon_of(const SolidBoundary& boundary,
   }
   std::vector<Ring> loops = polygon_of(boundary.points, triangles);
   if (loops.empty()) return {};
+  if (is_shared(boundary, region[0]) && !is_plane_for_all(boundary.points, loops)) return {};
 
   const double size = length(normal);
   const GridPoint& base = boundary.points[loops[0][0]];
@@ -95,6 +124,30 @@ class Continued {
   Shell shell_;
 };
 
+/// Whether triangles of the faces meet elsewhere than in common corners and edges.
+bool is_crossing(const Shell& shell) {
+  std::vector<Triangle> triangles;
+  for (const Face& face : shell.faces) {
+    const auto pieces = triangulate(shell.points, face.rings);
+    if (!pieces) return true;
+    triangles.insert(triangles.end(), pieces->begin(), pieces->end());
+  }
+  std::vector<GridBox> boxes;
+  boxes.reserve(triangles.size());
+  for (const Triangle& t : triangles) boxes.push_back(box_of(shell.points, t));
+  const BoxTree tree(boxes);
+  const auto corners = [&](std::uint32_t f) {
+    const Triangle& t = triangles[f];
+    return std::array<GridPoint, 3>{shell.points[t[0]], shell.points[t[1]], shell.points[t[2]]};
+  };
+  bool crossing = false;
+  for (std::uint32_t f = 0; f < triangles.size() && !crossing; ++f)
+    tree.for_each_meeting(boxes[f], [&](std::uint32_t g) {
+      crossing = crossing || (g > f && triangles_clash(corners(f), corners(g)));
+    });
+  return crossing;
+}
+
 }  // namespace
 
 Shell faces_of(const SolidBoundary& boundary, const Shell& input) {
@@ -115,6 +168,11 @@ Shell triangles_of(const SolidBoundary& boundary, const Shell& input) {
   for (std::size_t f = 0; f < boundary.triangles.size(); ++f)
     shell.add_triangle(boundary.triangles[f], boundary.parents[f]);
   return shell.take();
+}
+
+Shell shell_of(const SolidBoundary& boundary, const Shell& input) {
+  Shell polygons = faces_of(boundary, input);
+  return is_crossing(polygons) ? triangles_of(boundary, input) : std::move(polygons);
 }
 
 }  // namespace citymesh

@@ -74,6 +74,7 @@ void halve(SolidBoundary& boundary, std::uint32_t a, std::uint32_t b) {
       t = {u, middle, w};
       boundary.triangles.push_back({middle, v, w});
       boundary.parents.push_back(boundary.parents[f]);
+      if (!boundary.shared.empty()) boundary.shared.push_back(boundary.shared[f]);
       break;
     }
   }

@@ -127,9 +127,12 @@ bool surfaces_cross(const ClosedSurface& a, const ClosedSurface& b) {
   });
 }
 
-bool first_corner_in(const ClosedSurface& of, const ClosedSurface& in) {
-  const GridPoint& p = of.points[of.triangles[0][0]];
-  return in.box.meets(GridBox::of(p)) && Locator(in.points, in.triangles).locate(p) == Side::Inside;
+/// Whether one of them has a corner inside; of surfaces that do not touch, of several pieces too.
+bool any_corner_in(const ClosedSurface& of, const ClosedSurface& in) {
+  const Locator locator(in.points, in.triangles);
+  return std::any_of(of.points.begin(), of.points.end(), [&](const GridPoint& p) {
+    return in.box.meets(GridBox::of(p)) && locator.locate(p) == Side::Inside;
+  });
 }
 
 }  // namespace
@@ -143,7 +146,7 @@ bool surfaces_touch(const ClosedSurface& a, const ClosedSurface& b) {
 Answer interiors_overlap(const ClosedSurface& a, const ClosedSurface& b) {
   if (!boxes_overlap(a.box, b.box)) return Answer::No;
   if (!surfaces_touch(a, b))
-    return first_corner_in(a, b) || first_corner_in(b, a) ? Answer::Yes : Answer::No;
+    return any_corner_in(a, b) || any_corner_in(b, a) ? Answer::Yes : Answer::No;
   if (surfaces_cross(a, b) || has_sample(a, b, Side::Inside) || has_sample(b, a, Side::Inside))
     return Answer::Yes;
   if (face_separates(a, b) || face_separates(b, a)) return Answer::No;
@@ -151,14 +154,13 @@ Answer interiors_overlap(const ClosedSurface& a, const ClosedSurface& b) {
 }
 
 Answer lies_within(const ClosedSurface& inner, const ClosedSurface& outer) {
-  if (!surfaces_touch(inner, outer))
-    return first_corner_in(inner, outer) ? Answer::Yes : Answer::No;
+  if (!surfaces_touch(inner, outer)) return any_corner_in(inner, outer) ? Answer::Yes : Answer::No;
   if (surfaces_cross(inner, outer) || has_sample(inner, outer, Side::Outside)) return Answer::No;
   return Answer::Maybe;
 }
 
 bool touch_or_overlap(const ClosedSurface& a, const ClosedSurface& b) {
-  return surfaces_touch(a, b) || first_corner_in(a, b) || first_corner_in(b, a);
+  return surfaces_touch(a, b) || any_corner_in(a, b) || any_corner_in(b, a);
 }
 
 bool share_area(const ClosedSurface& a, const ClosedSurface& b) {

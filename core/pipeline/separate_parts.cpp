@@ -1,0 +1,280 @@
+#include "core/pipeline/separate_parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "core/base/union_find.h"
+#include "core/geometry/box_tree.h"
+#include "core/geometry/measure.h"
+#include "core/heal/heal.h"
+#include "core/pipeline/parts.h"
+#include "core/pipeline/round_trip_gate.h"
+#include "core/reconstruct/share_space.h"
+#include "core/validate/body.h"
+#include "core/validate/validate.h"
+
+namespace citymesh {
+namespace {
+
+using Pair = std::pair<std::uint32_t, std::uint32_t>;
+using Cluster = std::vector<std::uint32_t>;
+
+/// Tried one after the other; walls that are nearly one need the larger ones.
+constexpr std::array kTolerances_m{0.0015, 0.005, 0.02, 0.05};
+
+ClosedSurface surface_of(const TriangleMesh& mesh) {
+  ClosedSurface surface{mesh.points, mesh.triangles, {}};
+  if (mesh.points.empty()) return surface;
+  surface.box = GridBox::of(mesh.points[0]);
+  for (const GridPoint& p : mesh.points) surface.box.add(p);
+  return surface;
+}
+
+/// What becomes of a body.
+struct Separated {
+  TriangleMesh mesh{};  ///< empty: others have all of its space
+  std::uint64_t fingerprint = 0;
+  std::vector<Issue> issues{};
+};
+
+class Separation {
+ public:
+  Separation(const std::vector<Body>& bodies, const Inputs& inputs,
+             const std::vector<OpenFormat>& formats, const RunContext& context)
+      : bodies_(bodies),
+        inputs_(inputs),
+        formats_(formats),
+        context_(context),
+        clusters_(bodies.size()),
+        separated_(bodies.size()),
+        spaces_(bodies.size()) {
+    for (const Body& body : bodies) surfaces_.push_back(surface_of(body.mesh));
+  }
+
+  /// Bodies that overlap give way together. One that gave way may reach, by a rounding, into one
+  /// that only touched it: that one joins them and all give way anew.
+  void run() {
+    constexpr int kRounds = 4;
+    std::vector<char> changed(bodies_.size(), 1);
+    for (int round = 0; round < kRounds; ++round) {
+      find_overlaps(changed);
+      UnionFind wanted = clusters_;
+      std::vector<Pair> pairs;
+      for (const Pair& pair : overlaps_)
+        if (!refused_.contains(pair) && clusters_.root(pair.first) != clusters_.root(pair.second)) {
+          pairs.push_back(pair);
+          wanted.join(pair.first, pair.second);
+        }
+      if (pairs.empty()) return;
+      std::fill(changed.begin(), changed.end(), 0);
+      std::map<std::uint32_t, std::vector<Pair>> pairs_of;
+      for (const Pair& pair : pairs) pairs_of[wanted.root(pair.first)].push_back(pair);
+      for (const auto& [root, joining] : pairs_of) separate(joining, changed);
+    }
+    find_overlaps(changed);
+  }
+
+  /// Pairs that overlap after all.
+  const std::set<Pair>& overlaps() const { return overlaps_; }
+  std::optional<Separated>& separated(std::uint32_t body) { return separated_[body]; }
+  /// What a body gave to others; `to` is an index of a body.
+  const std::vector<SharedSpace>& spaces(std::uint32_t body) const { return spaces_[body]; }
+  Point3 place_of(const Pair& pair) const {
+    return common_place(surfaces_[pair.first], surfaces_[pair.second]);
+  }
+
+ private:
+  /// Asks again all pairs of which one body is `changed`.
+  void find_overlaps(const std::vector<char>& changed) {
+    std::erase_if(overlaps_,
+                  [&](const Pair& pair) { return changed[pair.first] || changed[pair.second]; });
+    std::vector<GridBox> boxes;
+    std::vector<std::uint32_t> parts;
+    for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
+      if (!is_part(bodies_[i]) || surfaces_[i].triangles.empty()) continue;
+      parts.push_back(i);
+      boxes.push_back(surfaces_[i].box);
+    }
+    const BoxTree tree(boxes);
+    for (std::uint32_t k = 0; k < parts.size(); ++k)
+      tree.for_each_meeting(boxes[k], [&](std::uint32_t m) {
+        const std::uint32_t i = parts[k], j = parts[m];
+        if (i < j && (changed[i] || changed[j]) && are_overlapping(i, j)) overlaps_.insert({i, j});
+      });
+  }
+
+  bool are_overlapping(std::uint32_t i, std::uint32_t j) const {
+    const Answer answer = interiors_overlap(surfaces_[i], surfaces_[j]);
+    if (answer != Answer::Maybe) return answer == Answer::Yes;
+    // Both have been cut along each other already, or they coincide in part: cutting them tells.
+    if (separated_[i] && separated_[j]) return false;
+    const Shell pair[] = {shell_of(bodies_[i].mesh), shell_of(bodies_[j].mesh)};
+    const auto shared = shared_space(pair, {}, context_);
+    return shared && !shared->empty();
+  }
+
+  /// All that the pairs join at once; where that fails pair by pair, as far as it goes.
+  void separate(const std::vector<Pair>& pairs, std::vector<char>& changed) {
+    if (pairs.size() > 1 && separate_joined(pairs, changed)) return;
+    for (const Pair& pair : pairs)
+      if (clusters_.root(pair.first) != clusters_.root(pair.second) &&
+          !separate_joined({&pair, 1}, changed))
+        refused_.insert(pair);
+  }
+
+  bool separate_joined(std::span<const Pair> pairs, std::vector<char>& changed) {
+    UnionFind joined = clusters_;
+    for (const auto& [a, b] : pairs) joined.join(a, b);
+    Cluster cluster;
+    for (std::uint32_t i = 0; i < bodies_.size(); ++i)
+      if (joined.root(i) == joined.root(pairs[0].first)) cluster.push_back(i);
+    for (const double tolerance_m : kTolerances_m) {
+      if (tolerance_m > inputs_.max_displacement_m || context_.stopped()) break;
+      if (!separate(cluster, tolerance_m)) continue;
+      clusters_ = std::move(joined);
+      for (const std::uint32_t i : cluster) changed[i] = 1;
+      return true;
+    }
+    return false;
+  }
+
+  /// False: a limit was reached or a gate does not hold.
+  bool separate(const Cluster& cluster, double tolerance_m) {
+    std::vector<Shell> shells;
+    for (const std::uint32_t i : cluster) shells.push_back(shell_of(bodies_[i].mesh));
+    auto shared = share_space(shells, {tolerance_m}, context_);
+    if (!shared) return false;
+    std::vector<Separated> results;
+    for (Shell& shell : shared->bodies) {
+      Separated& result = results.emplace_back();
+      if (shell.faces.empty()) continue;
+      RoundTripGate gate(formats_);
+      std::vector<GridPoint> cuts;
+      if (!make_fit(shell, inputs_.planarity_tolerance_m, std::ref(gate), cuts).empty())
+        return false;
+      result.issues = validate(shell, {.snap_tolerance_m = inputs_.snap_tolerance_m,
+                                       .planarity_tolerance_m = inputs_.planarity_tolerance_m});
+      if (std::any_of(result.issues.begin(), result.issues.end(),
+                      [](const Issue& issue) { return is_defect(issue.code); }))
+        return false;
+      result.mesh = gate.take_mesh();
+      result.fingerprint = gate.fingerprint();
+    }
+    for (std::size_t k = 0; k < cluster.size(); ++k) {
+      surfaces_[cluster[k]] = surface_of(results[k].mesh);
+      separated_[cluster[k]] = std::move(results[k]);
+      spaces_[cluster[k]].clear();
+    }
+    for (const SharedSpace& space : shared->spaces) {
+      spaces_[cluster[space.from]].push_back(space);
+      spaces_[cluster[space.from]].back().to = cluster[space.to];
+    }
+    return true;
+  }
+
+  const std::vector<Body>& bodies_;
+  const Inputs& inputs_;
+  const std::vector<OpenFormat>& formats_;
+  const RunContext& context_;
+  std::vector<ClosedSurface> surfaces_;
+  std::set<Pair> overlaps_;
+  UnionFind clusters_;
+  std::set<Pair> refused_;
+  std::vector<std::optional<Separated>> separated_;
+  std::vector<std::vector<SharedSpace>> spaces_;
+};
+
+/// The report of the building itself or of one of its parts.
+PartReport& report_of(BuildingReport& report, const Body& body) {
+  const auto found = std::find_if(report.parts.begin(), report.parts.end(),
+                                  [&](const PartReport& part) { return part.name == body.name; });
+  return found == report.parts.end() ? report : *found;
+}
+
+/// The part, if it is not the building's own geometry, ends as merged.
+void vanish(PartReport& part, const std::vector<std::string>& names,
+            const std::vector<SharedSpace>& spaces) {
+  const auto most = std::max_element(
+      spaces.begin(), spaces.end(),
+      [](const SharedSpace& s, const SharedSpace& t) { return s.volume_m3 < t.volume_m3; });
+  part.outcome = "merged";
+  part.merged_into = most == spaces.end() ? "" : names[most->to];
+  part.rung.clear();
+  part.issues_after.clear();
+  part.volume_after_m3 = 0;
+  part.triangles = 0;
+}
+
+void change(Body& body, PartReport& part, Separated separated) {
+  if (body.rung == "as_is") body.rung = "healed";
+  part.rung = body.rung;
+  body.mesh = std::move(separated.mesh);
+  for (Face& face : body.mesh.faces)
+    if (face.added && face.made_by.empty()) face.made_by = body.rung;
+  part.issues_after = std::move(separated.issues);
+  part.volume_after_m3 = volume_m3(body.mesh.points, body.mesh.triangles);
+  part.triangles = body.mesh.triangles.size();
+}
+
+}  // namespace
+
+void separate_parts(BuildingReport& report, std::vector<Body>& bodies,
+                    std::vector<std::uint64_t>& fingerprints, const Inputs& inputs,
+                    const std::vector<OpenFormat>& formats, const RunContext& context) {
+  if (std::count_if(bodies.begin(), bodies.end(), is_part) < 2) return;
+  std::vector<std::string> names;
+  for (const Body& body : bodies) names.push_back(body.gml_id.empty() ? body.name : body.gml_id);
+  Separation separation(bodies, inputs, formats, context);
+  separation.run();
+  for (const Pair& pair : separation.overlaps())
+    report.issues_after.push_back({issue_code::kPartsOverlap,
+                                   names[pair.first] + " with " + names[pair.second], 0,
+                                   separation.place_of(pair)});
+
+  for (std::uint32_t i = 0; i < bodies.size(); ++i)
+    for (const SharedSpace& space : separation.spaces(i)) {
+      const Point3 at = to_metres(space.at);
+      const auto note = [&](std::uint32_t body, std::string_view how, std::uint32_t other) {
+        report_of(report, bodies[body])
+            .repairs.push_back({"parts_separated",
+                                fmt::format("{:.3f} m³ {} {}", space.volume_m3, how, names[other]),
+                                0, at});
+      };
+      note(i, "given to", space.to);
+      note(space.to, "taken from", i);
+    }
+
+  std::vector<Body> left;
+  std::vector<std::uint64_t> marks;
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    Body& body = bodies[i];
+    PartReport& part = report_of(report, body);
+    if (std::optional<Separated>& separated = separation.separated(i)) {
+      if (separated->mesh.triangles.empty()) {
+        const bool own = &part == &report;
+        if (!own) vanish(part, names, separation.spaces(i));
+        continue;
+      }
+      fingerprints[i] = separated->fingerprint;
+      change(body, part, std::move(*separated));
+      if (report.rung == "as_is") report.rung = body.rung;
+    }
+    left.push_back(std::move(body));
+    marks.push_back(fingerprints[i]);
+  }
+  bodies = std::move(left);
+  fingerprints = std::move(marks);
+  sum_up(report, bodies);
+}
+
+}  // namespace citymesh
