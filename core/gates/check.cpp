@@ -26,6 +26,9 @@ struct HalfEdge {
 /// Intersecting pairs that are counted: in a tangle nearly all pairs are, and the verdict is clear.
 constexpr std::uint64_t kMaxClashes = 10'000;
 
+/// Work limit: pairs whose boxes meet. No building comes near; what does is refused.
+constexpr std::uint64_t kMaxPairs = 20'000'000;
+
 /// Counts what violates a gate and keeps the first place.
 class Finding {
  public:
@@ -234,31 +237,37 @@ class ShellCheck {
     }
     std::sort(keys.begin(), keys.end());
     Finding duplicate("G8");
-    for (std::size_t i = 1; i < keys.size(); ++i)
-      if (keys[i].first == keys[i - 1].first)
+    for (std::size_t i = 0; i < keys.size(); ++i)
+      if (i > 0 && keys[i].first == keys[i - 1].first)
         duplicate.add([&] { return place_text(points_[keys[i].first[0]]); });
+      else
+        distinct_.push_back(keys[i].second);
+    std::sort(distinct_.begin(), distinct_.end());
     duplicate.append_to(failures);
   }
 
   void check_pairs(std::vector<GateFailure>& failures) {
     std::vector<GridBox> boxes;
-    boxes.reserve(faces_.size());
-    for (const Triangle& f : faces_) boxes.push_back(box_of(points_, f));
+    boxes.reserve(distinct_.size());
+    for (const std::uint32_t f : distinct_) boxes.push_back(box_of(points_, faces_[f]));
     const BoxTree tree(boxes);
 
     Finding clash("G4");
-    const auto corners = [&](std::uint32_t f) {
-      return std::array<GridPoint, 3>{points_[faces_[f][0]], points_[faces_[f][1]],
-                                      points_[faces_[f][2]]};
+    std::uint64_t pairs = 0;
+    const auto corners = [&](std::uint32_t i) {
+      const Triangle& f = faces_[distinct_[i]];
+      return std::array<GridPoint, 3>{points_[f[0]], points_[f[1]], points_[f[2]]};
     };
-    for (std::uint32_t f = 0; f < faces_.size() && clash.count() < kMaxClashes; ++f)
-      tree.for_each_meeting(boxes[f], [&](std::uint32_t other) {
-        if (other > f && triangles_clash(corners(f), corners(other)))
-          clash.add([&] {
-            return place_text(points_[faces_[f][0]]) + " and " +
-                   place_text(points_[faces_[other][0]]);
-          });
+    for (std::uint32_t i = 0; i < boxes.size() && clash.count() < kMaxClashes; ++i) {
+      const auto own = corners(i);
+      tree.for_each_meeting(boxes[i], [&](std::uint32_t other) {
+        if (other <= i || ++pairs > kMaxPairs || !triangles_clash(own, corners(other))) return;
+        clash.add([&] { return place_text(own[0]) + " and " + place_text(corners(other)[0]); });
       });
+      if (pairs <= kMaxPairs) continue;
+      clash.add([] { return fmt::format("not known: over {} pairs are close", kMaxPairs); });
+      break;
+    }
     clash.append_to(failures);
 
     Finding junction("G6");
@@ -270,9 +279,10 @@ class ShellCheck {
     for (std::uint32_t v = 0; v < points_.size(); ++v) {
       if (!used[v]) continue;
       bool found = false;
-      tree.for_each_meeting(GridBox::of(points_[v]).grown(reach), [&](std::uint32_t f) {
+      tree.for_each_meeting(GridBox::of(points_[v]).grown(reach), [&](std::uint32_t k) {
+        const Triangle& f = faces_[distinct_[k]];
         for (std::size_t i = 0; i < 3 && !found; ++i) {
-          const std::uint32_t a = faces_[f][i], b = faces_[f][(i + 1) % 3];
+          const std::uint32_t a = f[i], b = f[(i + 1) % 3];
           if (a == v || b == v) continue;
           double position = 0;
           if (distance_to_segment_m(points_[v], points_[a], points_[b], &position) >=
@@ -305,6 +315,7 @@ class ShellCheck {
   std::vector<HalfEdge> half_edges_;
   std::vector<std::uint32_t>
       component_;  ///< by face: the lowest face of its edge-connected component
+  std::vector<std::uint32_t> distinct_;  ///< of faces on the same corners the first
   bool closed_ = false;
   bool oriented_ = false;
   bool has_zero_area_ = false;

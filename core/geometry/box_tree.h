@@ -42,25 +42,54 @@ struct GridBox {
   }
 };
 
+/// Places within `reach` of a segment, in steps; what it meets may be a little farther.
+class GridTube {
+ public:
+  GridTube(const GridPoint& a, const GridPoint& b, std::int64_t reach)
+      : start_{static_cast<double>(a.x), static_cast<double>(a.y), static_cast<double>(a.z)},
+        way_{static_cast<double>(b.x - a.x), static_cast<double>(b.y - a.y),
+             static_cast<double>(b.z - a.z)},
+        reach_(static_cast<double>(reach) + 1) {}
+
+  bool meets(const GridBox& box) const {
+    double first = 0, last = 1;
+    const auto clip = [&](double start, double way, std::int64_t low, std::int64_t high) {
+      const double from = static_cast<double>(low) - reach_ - start,
+                   to = static_cast<double>(high) + reach_ - start;
+      if (way == 0) return from <= 0 && to >= 0;
+      first = std::max(first, std::min(from / way, to / way));
+      last = std::min(last, std::max(from / way, to / way));
+      return first <= last;
+    };
+    return clip(start_.x, way_.x, box.min.x, box.max.x) &&
+           clip(start_.y, way_.y, box.min.y, box.max.y) &&
+           clip(start_.z, way_.z, box.min.z, box.max.z);
+  }
+
+ private:
+  Point3 start_, way_;
+  double reach_;
+};
+
 /// A static tree of boxes: build once in O(n log n), then ask which boxes meet a given one.
 class BoxTree {
  public:
   explicit BoxTree(std::span<const GridBox> boxes);
 
-  /// Calls visit(index of a box) for every box that meets `query`, in an order that depends only on
-  /// the boxes.
-  template <class Visit>
-  void for_each_meeting(const GridBox& query, Visit&& visit) const {
+  /// Calls visit(index of a box) for every box that meets `query`, a box or a tube, in an order
+  /// that depends only on the boxes.
+  template <class Query, class Visit>
+  void for_each_meeting(const Query& query, Visit&& visit) const {
     if (nodes_.empty()) return;
     std::uint32_t stack[64];
     int depth = 0;
     stack[depth++] = 0;
     while (depth > 0) {
       const Node& node = nodes_[stack[--depth]];
-      if (!node.box.meets(query)) continue;
+      if (!query.meets(node.box)) continue;
       if (node.count > 0) {
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-          if (boxes_[order_[i]].meets(query)) visit(order_[i]);
+          if (query.meets(boxes_[order_[i]])) visit(order_[i]);
       } else {
         stack[depth++] = node.first;  // children lie next to each other
         stack[depth++] = node.first + 1;

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/citymodel/edges.h"
+#include "core/geometry/box_tree.h"
 #include "core/geometry/measure.h"
 #include "core/geometry/patch.h"
 #include "core/geometry/triangulation.h"
@@ -12,8 +13,9 @@
 namespace citymesh {
 namespace {
 
-constexpr std::size_t kMaxChordSearch =
-    200;  ///< corners of a loop up to which chords are tried (quadratic)
+constexpr std::size_t kMaxChordSearch = 200;  ///< corners of a loop up to which chords are tried
+constexpr std::size_t kMaxSearch =
+    10'000'000;  ///< work limit, of all loops: corners of pieces tried
 
 constexpr double kUprightSlope = 0.1;       ///< of the normal, within 6 degrees of the horizontal
 constexpr double kUprightPreference = 100;  ///< of areas
@@ -98,11 +100,12 @@ std::vector<Ring> free_loops(const Shell& shell) {
 
 /// Cuts planar pieces off a loop along chords, upright ones first, as what misses are mostly walls,
 /// and the largest first of those; what is left may not be planar.
-void split_into_planar(const Shell& shell, Ring loop, double tolerance_m, std::vector<Ring>& planar,
-                       std::vector<Ring>& rest) {
+void split_into_planar(const Shell& shell, Ring loop, double tolerance_m, std::size_t& work,
+                       std::vector<Ring>& planar, std::vector<Ring>& rest) {
   while (!is_planar(shell, loop, tolerance_m)) {
     const std::size_t n = loop.size();
-    if (n < 4 || n > kMaxChordSearch) {
+    if (n <= kMaxChordSearch) work += n * n * n / 2;
+    if (n < 4 || n > kMaxChordSearch || work > kMaxSearch) {
       rest.push_back(std::move(loop));
       return;
     }
@@ -153,16 +156,21 @@ bool inside(const Shell& shell, const Ring& ring, const GridPoint& point, Axis a
 
 void close_holes(Shell& shell, StepContext& context) {
   std::vector<Ring> planar, rest;
+  std::size_t work = 0;
   for (Ring& loop : free_loops(shell))
-    split_into_planar(shell, std::move(loop), context.planarity_tolerance_m, planar, rest);
+    split_into_planar(shell, std::move(loop), context.planarity_tolerance_m, work, planar, rest);
 
   // A face that hangs free is no hole: closing its outline would only double it.
   std::set<Ring> outlines;
   for (const Face& face : shell.faces) outlines.insert(sorted(face.rings[0]));
   std::erase_if(planar, [&](const Ring& loop) { return outlines.contains(sorted(loop)); });
-  for (const Ring& loop : rest)
+  for (const Ring& loop : rest) {
+    const std::size_t n = std::min(loop.size(), kMaxPatchCorners);
+    work += n * n * n / 6;
+    if (work > 2 * kMaxSearch) break;
     if (const auto patch = minimal_patch(shell.points, loop))
       for (const Triangle& t : *patch) planar.push_back({t[0], t[1], t[2]});
+  }
   std::erase_if(planar,
                 [&](const Ring& loop) { return area_m2(shell, loop) > context.max_hole_area_m2; });
 
@@ -172,19 +180,29 @@ void close_holes(Shell& shell, StepContext& context) {
   planes.reserve(planar.size());
   for (const Ring& loop : planar) planes.push_back(plane_of(shell, loop));
   std::vector<std::size_t> owner(planar.size());
+  std::vector<GridBox> boxes;
+  for (const Ring& loop : planar) {
+    GridBox box = GridBox::of(shell.points[loop[0]]);
+    for (const std::uint32_t corner : loop) box.add(shell.points[corner]);
+    boxes.push_back(box);
+  }
+  const BoxTree tree(boxes);
+  // Off the plane by the tolerance, a place over a ring may be off its box by more.
+  const auto reach =
+      static_cast<std::int64_t>(std::ceil(4 * context.planarity_tolerance_m * kGridStepsPerMetre));
   for (std::size_t i = 0; i < planar.size(); ++i) {
     owner[i] = i;
-    for (std::size_t j = 0; j < planar.size(); ++j) {
-      if (i == j) continue;
+    const GridPoint& corner = shell.points[planar[i][0]];
+    std::size_t first = planar.size();
+    tree.for_each_meeting(GridBox::of(corner).grown(reach), [&](std::uint32_t j) {
+      if (i == j || j > first) return;
       const Point3 &n = planes[i].normal, &m = planes[j].normal;
-      if (n.x * m.x + n.y * m.y + n.z * m.z > -0.99) continue;
-      const GridPoint& corner = shell.points[planar[i][0]];
+      if (n.x * m.x + n.y * m.y + n.z * m.z > -0.99) return;
       if (planes[j].distance_m(corner) <= context.planarity_tolerance_m &&
-          inside(shell, planar[j], corner, dominant_axis(m))) {
-        owner[i] = j;
-        break;
-      }
-    }
+          inside(shell, planar[j], corner, dominant_axis(m)))
+        first = j;
+    });
+    if (first < planar.size()) owner[i] = first;
   }
   std::vector<Face> faces(planar.size());
   for (std::size_t i = 0; i < planar.size(); ++i)

@@ -37,10 +37,9 @@ void insert_junctions(Shell& shell, StepContext& context) {
       for (std::size_t i = 0; i < ring.size(); ++i) {
         const std::uint32_t a = ring[i], b = ring[(i + 1) % ring.size()];
         result.push_back(a);
-        GridBox box = GridBox::of(shell.points[a]);
-        box.add(shell.points[b]);
+        const GridTube around(shell.points[a], shell.points[b], reach);
         std::vector<Junction> junctions;
-        tree.for_each_meeting(box.grown(reach), [&](std::uint32_t k) {
+        tree.for_each_meeting(around, [&](std::uint32_t k) {
           const std::uint32_t v = vertices[k];
           if (v == a || v == b) return;
           double position = 0;

@@ -1,36 +1,12 @@
 #include <algorithm>
 #include <map>
 
+#include "core/citymodel/spikes.h"
 #include "core/geometry/triangulation.h"
 #include "core/heal/steps.h"
 
 namespace citymesh {
 namespace {
-
-/// Takes out a, a → a and a, b, a → a until nothing changes.
-bool drop_repeats_and_spikes(Ring& ring) {
-  bool changed = false;
-  for (bool again = true; again && !ring.empty();) {
-    again = false;
-    for (std::size_t i = 0; i < ring.size() && ring.size() > 1; ++i) {
-      const std::size_t next = (i + 1) % ring.size(), after = (i + 2) % ring.size();
-      if (ring[i] == ring[next]) {
-        ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(next));
-        again = changed = true;
-        break;
-      }
-      if (ring.size() > 2 && ring[i] == ring[after]) {
-        // The spike i, next, after: the tip and one of its feet go.
-        for (const std::size_t gone : {std::max(next, after), std::min(next, after)})
-          ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(gone));
-        again = changed = true;
-        break;
-      }
-    }
-  }
-  if (ring.size() < 3) ring.clear();
-  return changed;
-}
 
 /// Cuts a ring at corners it visits twice into rings that visit every corner once.
 std::vector<Ring> split_at_touches(const Ring& ring) {

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <exception>
+#include <functional>
 
 namespace citymesh {
 namespace {
@@ -17,6 +18,23 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 namespace Simplification = CGAL::Surface_mesh_simplification;
+
+struct WorkDone : std::exception {};
+
+/// Ends the wrapping at its work limit.
+class Watch : public CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
+ public:
+  explicit Watch(const WrapLimits& limits) : limits_(limits) {}
+
+  template <class Wrapper, class Gate>
+  void before_facet_treatment(const Wrapper&, const Gate&) {
+    if (++steps_ > limits_.max_steps || limits_.stop.stop_requested()) throw WorkDone{};
+  }
+
+ public:
+  const WrapLimits& limits_;
+  std::size_t steps_ = 0;
+};
 
 /// Ends when the next collapse would change the volume around its edge by too much.
 struct StopAtCost {
@@ -40,7 +58,7 @@ void thin_out(Mesh& mesh, double volume) {
 
 std::optional<WrapMesh> alpha_wrap(std::span<const Point3> points,
                                    std::span<const Triangle> triangles, double alpha_m,
-                                   double offset_m) {
+                                   double offset_m, const WrapLimits& limits) {
   try {
     std::vector<Kernel::Point_3> corners;
     corners.reserve(points.size());
@@ -49,7 +67,11 @@ std::optional<WrapMesh> alpha_wrap(std::span<const Point3> points,
     faces.reserve(triangles.size());
     for (const Triangle& t : triangles) faces.push_back({t[0], t[1], t[2]});
     Mesh mesh;
-    CGAL::alpha_wrap_3(corners, faces, alpha_m, offset_m, mesh);
+    Watch watch(limits);
+    CGAL::alpha_wrap_3(corners, faces, alpha_m, offset_m, mesh, CGAL::parameters::default_values(),
+                       CGAL::parameters::visitor(std::ref(watch)));
+    if (getenv("WT"))
+      fprintf(stderr, "aw steps %zu v %zu\n", watch.steps_, (size_t)mesh.number_of_vertices());
     thin_out(mesh, alpha_m * alpha_m * offset_m);
 
     WrapMesh result;

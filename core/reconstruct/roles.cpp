@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/citymodel/spikes.h"
 #include "core/geometry/box_tree.h"
 #include "core/geometry/predicates.h"
 #include "core/reconstruct/untangle.h"
@@ -13,23 +14,6 @@ namespace {
 constexpr double kSteepest = 0.05;  ///< normal z of what may count as vertical
 constexpr double kMaxLean = 500;    ///< how far it may lean, in steps
 constexpr double kFlat = 0.5;       ///< normal z of what is no wall, however narrow
-
-/// Drops corners that repeat the one before, or return to the one before that.
-Ring without_spikes(const Ring& ring) {
-  Ring clean = ring;
-  for (std::size_t i = 0; i < clean.size() && clean.size() > 2;) {
-    const std::size_t n = clean.size();
-    const std::uint32_t before = clean[(i + n - 1) % n], after = clean[(i + 1) % n];
-    if (clean[i] == after || before == after) {
-      clean.erase(clean.begin() + static_cast<std::ptrdiff_t>(i));
-      i = i > 1 ? i - 2 : 0;
-    } else {
-      ++i;
-    }
-  }
-  if (clean.size() < 3) clean.clear();
-  return clean;
-}
 
 }  // namespace
 
@@ -88,7 +72,7 @@ PartitionLine seen_from_above(const Shell& shell, const Face& face) {
 Shell with_clean_rings(const Shell& shell) {
   Shell clean = shell;
   for (Face& face : clean.faces) {
-    for (Ring& ring : face.rings) ring = without_spikes(ring);
+    for (Ring& ring : face.rings) drop_repeats_and_spikes(ring);
     if (!face.rings.empty() && face.rings[0].empty()) face.rings.clear();
     std::erase_if(face.rings, [](const Ring& ring) { return ring.empty(); });
   }

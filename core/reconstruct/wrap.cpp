@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/geometry/box_tree.h"
 #include "core/geometry/measure.h"
@@ -16,14 +17,19 @@ namespace {
 
 constexpr std::size_t kMaxTriangles = 60000;  ///< work limit, of the input
 constexpr double kBalls = 2500;               ///< work limit: area of the box by alpha²
+constexpr double kMaxSteps = 200'000;         ///< work limit, of one wrap
 constexpr double kMinAlpha_m = 0.05;
 constexpr double kOffsetShare = 1.0 / 20;  ///< of alpha
 constexpr double kReach = 5;               ///< offsets that a plane may be away from its point
-constexpr int kGrowths = 3;                ///< times that alpha is doubled when the wrap walks in
+constexpr int kAttempts = 3;               ///< to find an alpha that neither walks in nor bridges
 constexpr double kSolidShare = 0.5;        ///< of what roofs cover, below which a wrap is a sheet
-constexpr double kCoveredShare = 0.9;      ///< of the footprint that has a ground
-constexpr double kSamePlane = 0.97;        ///< cosine
-constexpr double kMinHeight_m = 0.0015;    ///< of triangles, above what the gates take
+constexpr double kSwollenShare = 1.15;   ///< of the columns under the roofs, above which it bridges
+constexpr double kSheet = 1000;          ///< steps; what lies closer above each other is one layer
+constexpr std::int64_t kColumns = 64;    ///< along either side of the box
+constexpr double kMaxLayers = 30;        ///< triangles above each other, on average
+constexpr double kCoveredShare = 0.9;    ///< of the footprint that has a ground
+constexpr double kSamePlane = 0.97;      ///< cosine
+constexpr double kMinHeight_m = 0.0015;  ///< of triangles, above what the gates take
 
 double dot(const Point3& a, const Point3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
@@ -59,6 +65,9 @@ class Soup {
 
   const Shell& shell() const { return shell_; }
   const std::vector<Triangle>& triangles() const { return triangles_; }
+  std::array<GridPoint, 3> corners(std::uint32_t i) const {
+    return corners_of(shell_.points, triangles_[i]);
+  }
   const Point3& normal(std::uint32_t i) const { return normals_[i]; }
   const Face& face(std::uint32_t i) const { return shell_.faces[face_of_[i]]; }
   const std::vector<GridBox>& boxes() const { return boxes_; }
@@ -70,14 +79,12 @@ class Soup {
     return 2 * (d.x * d.y + d.y * d.z + d.z * d.x);
   }
 
-  /// What of the triangles within `z_below` of the lowest point, or all, covers seen from above.
-  std::vector<Area> covered(std::int64_t z_below) const {
+  /// What the triangles cover seen from above.
+  std::vector<Area> covered() const {
     std::vector<Area> areas;
-    for (std::size_t i = 0; i < triangles_.size(); ++i) {
-      if (boxes_[i].max.z > z_below) continue;
+    for (const Triangle& t : triangles_) {
       Area area;
-      for (const std::uint32_t v : triangles_[i])
-        area.exterior.push_back(project(shell_.points[v], Axis::Z));
+      for (const std::uint32_t v : t) area.exterior.push_back(project(shell_.points[v], Axis::Z));
       const Int128 twice = area2(area);
       if (twice == 0) continue;
       if (twice < 0) std::swap(area.exterior[1], area.exterior[2]);
@@ -110,10 +117,69 @@ class Soup {
   GridBox box_{};
 };
 
-double area_m2(const std::vector<Area>& areas) {
+/// What upright columns through a soup tell.
+struct Columns {
+  double footprint_m2 = 0;  ///< met by any
+  double ground_m2 = 0;     ///< met low
+  double volume_m3 = 0;  ///< from the lowest to the highest; from the bottom where only one is met
+  double layers = 0;     ///< met, on average
+  double boxes = 0;      ///< of triangles met, on average: how far searches among them branch out
+};
+
+/// Whether the upright line through p meets the triangle, and where.
+std::optional<double> met(const GridPoint2& p, const std::array<GridPoint, 3>& corners) {
+  std::array<double, 3> share{};  // of every corner, times the area
   double sum = 0;
-  for (const Area& area : areas) sum += static_cast<double>(area2(area)) / 2;
-  return sum / (kGridStepsPerMetre * kGridStepsPerMetre);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const GridPoint2 a = project(corners[(i + 1) % 3], Axis::Z),
+                     b = project(corners[(i + 2) % 3], Axis::Z);
+    share[i] = static_cast<double>(area2(a, b, p));
+    sum += share[i];
+  }
+  double z = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (sum == 0 || share[i] * sum < 0) return {};
+    z += share[i] / sum * static_cast<double>(corners[i].z);
+  }
+  return z;
+}
+
+Columns columns_through(const Soup& soup, const BoxTree& tree) {
+  Columns columns;
+  const GridBox& box = soup.box();
+  const std::int64_t wide = box.max.x - box.min.x, deep = box.max.y - box.min.y;
+  const auto bottom = static_cast<double>(box.min.z);
+  const double low = bottom + static_cast<double>(box.max.z - box.min.z) / 4;
+  const double cell_m2 = static_cast<double>(wide) * static_cast<double>(deep) * kGridStep_m *
+                         kGridStep_m / static_cast<double>(kColumns * kColumns);
+  std::uint64_t hits = 0, boxes = 0, columns_met = 0;
+  for (std::int64_t i = 0; i < kColumns; ++i)
+    for (std::int64_t j = 0; j < kColumns; ++j) {
+      const GridPoint2 p{box.min.x + (2 * i + 1) * wide / (2 * kColumns),
+                         box.min.y + (2 * j + 1) * deep / (2 * kColumns)};
+      double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+      const std::uint64_t hits_before = hits;
+      tree.for_each_meeting(GridBox{{p.x, p.y, box.min.z}, {p.x, p.y, box.max.z}},
+                            [&](std::uint32_t t) {
+                              ++boxes;
+                              const auto z = met(p, soup.corners(t));
+                              if (!z) return;
+                              lowest = std::min(lowest, *z);
+                              highest = std::max(highest, *z);
+                              ++hits;
+                            });
+      if (hits == hits_before) continue;
+      ++columns_met;
+      columns.footprint_m2 += cell_m2;
+      if (lowest <= low) columns.ground_m2 += cell_m2;
+      const double from = highest - lowest > kSheet ? lowest : bottom;
+      columns.volume_m3 += cell_m2 * (highest - from) * kGridStep_m;
+    }
+  if (columns_met > 0) {
+    columns.layers = static_cast<double>(hits) / static_cast<double>(columns_met);
+    columns.boxes = static_cast<double>(boxes) / static_cast<double>(columns_met);
+  }
+  return columns;
 }
 
 /// A sheet over the areas at the height z.
@@ -151,7 +217,7 @@ class Planes {
     const auto reach = static_cast<std::int64_t>(std::ceil(reach_m * kGridStepsPerMetre));
     std::vector<std::pair<double, std::uint32_t>> near;
     tree_.for_each_meeting(GridBox::of(at).grown(reach), [&](std::uint32_t i) {
-      const auto c = corners_of(soup_.shell().points, soup_.triangles()[i]);
+      const auto c = soup_.corners(i);
       const double d = distance_to_triangle_m(at, c[0], c[1], c[2]);
       if (d <= reach_m) near.emplace_back(d, i);
     });
@@ -185,7 +251,7 @@ class Planes {
     const Face* found = nullptr;
     tree_.for_each_meeting(GridBox::of(at).grown(reach), [&](std::uint32_t i) {
       if (std::abs(dot(soup_.normal(i), normal)) < 0.7) return;
-      const auto c = corners_of(soup_.shell().points, soup_.triangles()[i]);
+      const auto c = soup_.corners(i);
       const double d = distance_to_triangle_m(at, c[0], c[1], c[2]);
       if (d > nearest || (found != nullptr && d == nearest)) return;
       nearest = d;
@@ -304,32 +370,42 @@ std::optional<Shell> wrap(const Shell& input, const ReconstructOptions& options,
   const GridBox& box = soup.box();
   const std::int64_t height = box.max.z - box.min.z;
   if (height == 0) return {};
-  const std::vector<Area> footprint = soup.covered(box.max.z);
-  const double footprint_m2 = area_m2(footprint);
-  if (footprint_m2 <= 0) return {};
+  const BoxTree tree(soup.boxes());
+  const Columns columns = columns_through(soup, tree);
+  if (columns.footprint_m2 <= 0 || columns.layers > kMaxLayers || context.stopped()) return {};
 
   std::vector<GridPoint> points = clean.points;
   std::vector<Triangle> triangles = soup.triangles();
-  if (area_m2(soup.covered(box.min.z + height / 4)) < kCoveredShare * footprint_m2)
-    add_ground(points, triangles, footprint, box.min.z);
-  const double expected_m3 = footprint_m2 * std::max(soup.mean_z_m() - to_metres(box.min).z,
-                                                     static_cast<double>(height) * kGridStep_m / 4);
+  if (columns.ground_m2 < kCoveredShare * columns.footprint_m2)
+    add_ground(points, triangles, soup.covered(), box.min.z);
+  const double expected_m3 =
+      columns.footprint_m2 * std::max(soup.mean_z_m() - to_metres(box.min).z,
+                                      static_cast<double>(height) * kGridStep_m / 4);
 
   std::vector<Point3> places;
   for (const GridPoint& p : points) places.push_back(to_metres(p));
-  const BoxTree tree(soup.boxes());
   const Planes planes(soup, tree);
   double alpha_m = std::max(kMinAlpha_m, std::sqrt(soup.box_area_m2() / kBalls)) *
                    (1 + 20 * options.tolerance_m);
-  for (int growth = 0; growth < kGrowths; ++growth, alpha_m *= 2) {
+  const auto max_steps = static_cast<std::size_t>(
+      kMaxSteps * std::min(1.0, kMaxLayers / std::max(columns.boxes, 1.0)));
+  bool bridges = false, walks_in = false;
+  for (int attempt = 0; attempt < kAttempts && !(bridges && walks_in); ++attempt) {
+    const double offset_m = alpha_m * kOffsetShare, reach_m = kReach * offset_m;
+    const auto mesh = alpha_wrap(places, triangles, alpha_m, offset_m, {max_steps, context.stop});
     if (context.stopped()) return {};
-    const double offset_m = alpha_m * kOffsetShare;
-    const auto mesh = alpha_wrap(places, triangles, alpha_m, offset_m);
-    if (!mesh) continue;
-    const double reach_m = kReach * offset_m;
-    const std::vector<GridPoint> fitted = refitted(*mesh, planes, reach_m);
-    if (volume_m3(fitted, mesh->triangles) < kSolidShare * expected_m3) continue;
-    return shell_of(*mesh, fitted, soup, planes, reach_m);
+    std::vector<GridPoint> fitted;
+    if (mesh) fitted = refitted(*mesh, planes, reach_m);
+    const double fitted_m3 = mesh ? volume_m3(fitted, mesh->triangles) : 0;
+    if (fitted_m3 > kSwollenShare * columns.volume_m3) {
+      bridges = true;
+      alpha_m /= 2;
+    } else if (fitted_m3 < kSolidShare * expected_m3) {
+      walks_in = true;
+      alpha_m *= 2;
+    } else {
+      return shell_of(*mesh, fitted, soup, planes, reach_m);
+    }
   }
   return {};
 }

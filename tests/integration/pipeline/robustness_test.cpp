@@ -53,9 +53,9 @@ TEST(RobustnessOfRuns, BadBuildingsDoNotChangeWhatTheirNeighboursGet) {
   std::vector<DefectiveHouse> city = small_city();
   run_city(city, 1, alone.path());
   const std::size_t houses = city.size();
-  for (testing::BadBuilding& bad : testing::bad_buildings(1000)) {
+  for (const testing::BadBuilding& bad : testing::bad_buildings()) {
     DefectiveHouse house;
-    house.building = std::move(bad.building);
+    house.building = bad.make(1000);
     house.building.gml_id = bad.name;
     for (Point3& p : house.building.geometries[0].points) p = {p.x + 300, p.y + 300, p.z + 30};
     city.push_back(std::move(house));

@@ -1,5 +1,6 @@
 #include "tests/support/defects/bad_buildings.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -73,7 +74,7 @@ Building ring_of_triangles(std::size_t faces) {
   return pile.building();
 }
 
-Building all_points_equal() {
+Building all_points_equal(std::size_t) {
   Pile pile;
   for (int i = 0; i < 6; ++i) pile.face(Corners(4, {5, 5, 5}));
   return pile.building();
@@ -86,7 +87,7 @@ Building coincident_faces(std::size_t faces) {
 }
 
 /// A box with a cavity, in it a box with a cavity.
-Building nested_inner_shells() {
+Building nested_inner_shells(std::size_t) {
   Pile pile;
   for (int i = 0; i < 4; ++i) {
     const double in = 2.0 * i;
@@ -103,7 +104,7 @@ Building nested_inner_shells() {
 }
 
 /// A strip with half a twist.
-Building moebius_strip() {
+Building moebius_strip(std::size_t) {
   Pile pile;
   constexpr int kPieces = 40;
   const auto at = [](int i, double side) {
@@ -117,13 +118,13 @@ Building moebius_strip() {
   return pile.building();
 }
 
-Building single_triangle() {
+Building single_triangle(std::size_t) {
   Pile pile;
   pile.face({{0, 0, 0}, {10, 0, 0}, {0, 10, 4}});
   return pile.building();
 }
 
-Building short_rings() {
+Building short_rings(std::size_t) {
   Pile pile;
   pile.face({{0, 0, 0}, {10, 0, 0}});
   pile.face({{0, 0, 0}});
@@ -131,30 +132,124 @@ Building short_rings() {
   return pile.building();
 }
 
-Building zero_height() {
+Building zero_height(std::size_t) {
   Pile pile;
   pile.box({0, 0, 3}, {10, 10, 3});
   return pile.building();
 }
 
-Building far_away() {
+Building far_away(std::size_t) {
   Pile pile;
   pile.box({1e7, 1e7, 0}, {1e7 + 10, 1e7 + 10, 10});
   return pile.building();
 }
 
+/// Corners of a star, on a plane that leans.
+Corners star(std::size_t corners, double z) {
+  Corners ring;
+  for (std::size_t i = 0; i < corners; ++i) {
+    const double u = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(corners);
+    const double r = i % 2 == 0 ? 30 : 20;
+    ring.push_back({r * std::cos(u), r * std::sin(u), z + 0.1 * r * std::cos(u)});
+  }
+  return ring;
+}
+
+/// Where all corners stand on one ring.
+Building one_ring(std::size_t corners) {
+  Pile pile;
+  pile.face(star(corners / 10, 20));
+  return pile.building();
+}
+
+/// A ring that crosses itself wherever it can.
+Building tangled_ring(std::size_t corners) {
+  Pile pile;
+  Random random(3);
+  Corners ring;
+  for (std::size_t i = 0; i < corners / 10; ++i) {
+    const double x = random.between(0, 40), y = random.between(0, 40);
+    ring.push_back({x, y, 5 + x / 4});
+  }
+  pile.face(ring);
+  return pile.building();
+}
+
+/// Upright walls around a star; nothing above, and below it a ring that runs the wrong way.
+Building open_star(std::size_t faces) {
+  Pile pile;
+  const Corners below = star(faces / 10, 5), above = star(faces / 10, 25);
+  for (std::size_t i = 0, n = below.size(); i < n; ++i)
+    pile.face({below[i], below[(i + 1) % n], above[(i + 1) % n], above[i]});
+  pile.face(below);
+  return pile.building();
+}
+
+Building random_triangles(std::size_t faces) {
+  Pile pile;
+  Random random(2);
+  const auto corner = [&] {
+    const double x = random.between(0, 50), y = random.between(0, 50);
+    return Point3{x, y, random.between(0, 50)};
+  };
+  for (std::size_t i = 0; i < faces / 100; ++i) {
+    const Point3 a = corner(), b = corner();
+    pile.face({a, b, corner()});
+  }
+  return pile.building();
+}
+
+/// Triangles that nearly lie on each other: every pair overlaps.
+Building stack_of_sheets(std::size_t faces) {
+  Pile pile;
+  for (std::size_t i = 0; i < faces / 100; ++i) {
+    const double z = 0.01 * static_cast<double>(i);
+    pile.face({{0, 0, z}, {10, 0, z}, {0, 10, z + 3}});
+  }
+  return pile.building();
+}
+
+/// Triangles from one corner to the next, each larger than the one before.
+Building fan_of_slivers(std::size_t faces) {
+  Pile pile;
+  for (std::size_t i = 0; i < faces / 10; ++i) {
+    const double y = 0.002 * static_cast<double>(i);
+    pile.face({{0, 0, 0}, {100, y, 5}, {100, y + 0.002, 5}});
+  }
+  return pile.building();
+}
+
+/// Boxes that stand in each other, all around one place.
+Building boxes_in_boxes(std::size_t faces) {
+  Pile pile;
+  const std::size_t count = faces / 600;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double in = 0.02 * static_cast<double>(i), t = 0.1 * static_cast<double>(i % 7);
+    pile.box({in, in + t, in}, {100 - in, 100 - in, 60 - in + t});
+  }
+  return pile.building();
+}
+
 }  // namespace
 
-std::vector<BadBuilding> bad_buildings(std::size_t size) {
-  return {{"ring_of_triangles", ring_of_triangles(size)},
-          {"all_points_equal", all_points_equal()},
-          {"coincident_faces", coincident_faces(size / 10)},
-          {"nested_inner_shells", nested_inner_shells()},
-          {"moebius_strip", moebius_strip()},
-          {"single_triangle", single_triangle()},
-          {"short_rings", short_rings()},
-          {"zero_height", zero_height()},
-          {"far_away", far_away()}};
+std::span<const BadBuilding> bad_buildings() {
+  static constexpr std::array kAll{BadBuilding{"ring_of_triangles", ring_of_triangles},
+                                   BadBuilding{"all_points_equal", all_points_equal},
+                                   BadBuilding{"coincident_faces", coincident_faces},
+                                   BadBuilding{"nested_inner_shells", nested_inner_shells},
+                                   BadBuilding{"moebius_strip", moebius_strip},
+                                   BadBuilding{"single_triangle", single_triangle},
+                                   BadBuilding{"short_rings", short_rings},
+                                   BadBuilding{"zero_height", zero_height},
+                                   BadBuilding{"one_ring", one_ring},
+                                   BadBuilding{"tangled_ring", tangled_ring},
+                                   BadBuilding{"open_star", open_star},
+                                   BadBuilding{"random_triangles", random_triangles},
+                                   BadBuilding{"stack_of_sheets", stack_of_sheets},
+                                   BadBuilding{"fan_of_slivers", fan_of_slivers},
+                                   BadBuilding{"boxes_in_boxes", boxes_in_boxes},
+                                   BadBuilding{"far_away", far_away}};
+  return kAll;
 }
 
 }  // namespace citymesh::testing

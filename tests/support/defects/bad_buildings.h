@@ -1,19 +1,20 @@
 #pragma once
 
+#include <span>
 #include <string_view>
-#include <vector>
 
 #include "core/citymodel/building.h"
 
 namespace citymesh::testing {
 
+/// A building that is none, or that is far too much of one. Large ones have about `size` corners or
+/// faces, or as many as are as hard.
 struct BadBuilding {
   std::string_view name;
-  Building building{};
+  Building (*make)(std::size_t size);
 };
 
-/// Buildings that are none, or that are far too much of one; all but `far_away` within 200 m of the
-/// origin. `size` is the number of faces of the large ones.
-std::vector<BadBuilding> bad_buildings(std::size_t size);
+/// All but `far_away` within 200 m of the origin.
+std::span<const BadBuilding> bad_buildings();
 
 }  // namespace citymesh::testing
