@@ -31,7 +31,7 @@ class Watch : public CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
     if (++steps_ > limits_.max_steps || limits_.stop.stop_requested()) throw WorkDone{};
   }
 
- public:
+ private:
   const WrapLimits& limits_;
   std::size_t steps_ = 0;
 };
@@ -70,8 +70,6 @@ std::optional<WrapMesh> alpha_wrap(std::span<const Point3> points,
     Watch watch(limits);
     CGAL::alpha_wrap_3(corners, faces, alpha_m, offset_m, mesh, CGAL::parameters::default_values(),
                        CGAL::parameters::visitor(std::ref(watch)));
-    if (getenv("WT"))
-      fprintf(stderr, "aw steps %zu v %zu\n", watch.steps_, (size_t)mesh.number_of_vertices());
     thin_out(mesh, alpha_m * alpha_m * offset_m);
 
     WrapMesh result;

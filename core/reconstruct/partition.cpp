@@ -48,6 +48,10 @@ GridBox box_of(const GridPoint2& a, const GridPoint2& b) {
   return box;
 }
 
+GridTube tube(const GridPoint2& a, const GridPoint2& b, std::int64_t reach) {
+  return {{a.x, a.y, 0}, {b.x, b.y, 0}, reach};
+}
+
 /// Vertices and pieces between them while they are brought to rest.
 class Network {
  public:
@@ -185,7 +189,7 @@ class Network {
     const BoxTree tree(boxes);
     for (const auto& [edge, piece] : pieces_) {
       const GridPoint2 &a = places_[edge.first], &b = places_[edge.second];
-      tree.for_each_meeting(box_of(a, b).grown(tolerance_), [&, edge = edge](std::uint32_t k) {
+      tree.for_each_meeting(tube(a, b, tolerance_), [&, edge = edge](std::uint32_t k) {
         const std::uint32_t i = vertices[k];
         if (i == edge.first || i == edge.second) return;
         const Foot foot = foot_of(places_[i], a, b);
@@ -204,10 +208,10 @@ class Network {
       boxes.push_back(box_of(places_[edge.first], places_[edge.second]));
     const BoxTree tree(boxes);
     std::map<GridPoint2, std::uint32_t> constructed;
-    for (std::uint32_t s = 0; s < all.size(); ++s)
-      tree.for_each_meeting(boxes[s], [&](std::uint32_t t) {
-        if (t <= s || places_.size() > 4 * max_edges_) return;
-        const GridPoint2 a = places_[all[s].first], b = places_[all[s].second];
+    for (std::uint32_t s = 0; s < all.size() && places_.size() <= 4 * max_edges_; ++s) {
+      const GridPoint2 a = places_[all[s].first], b = places_[all[s].second];
+      tree.for_each_meeting(tube(a, b, 0), [&](std::uint32_t t) {
+        if (t <= s) return;
         const GridPoint2 c = places_[all[t].first], d = places_[all[t].second];
         const Int128 abc = area2(a, b, c), abd = area2(a, b, d);
         if (sign(abc) * sign(abd) >= 0 || orient2d(c, d, a) * orient2d(c, d, b) >= 0) return;
@@ -220,6 +224,7 @@ class Network {
         cuts[all[s]].push_back(at->second);
         cuts[all[t]].push_back(at->second);
       });
+    }
   }
 
   std::int64_t tolerance_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/geometry/box_tree.h"
 #include "core/geometry/measure.h"
@@ -398,7 +399,7 @@ std::optional<Shell> wrap(const Shell& input, const ReconstructOptions& options,
     if (mesh) fitted = refitted(*mesh, planes, reach_m);
     const double fitted_m3 = mesh ? volume_m3(fitted, mesh->triangles) : 0;
     if (fitted_m3 > kSwollenShare * columns.volume_m3) {
-      bridges = true;
+      if (std::exchange(bridges, true)) return {};
       alpha_m /= 2;
     } else if (fitted_m3 < kSolidShare * expected_m3) {
       walks_in = true;

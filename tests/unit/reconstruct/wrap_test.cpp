@@ -34,9 +34,8 @@ double gated_volume_m3(const Shell& shell) {
   return volume_m3(triangles.points, triangles.triangles);
 }
 
-/// Every face of a block of 10 m by 8 m by 6 m drawn in by `gap_m`, so that no two meet.
-Building loose_block(double gap_m, bool with_ground = true) {
-  Building building = block(0, 0, 10, 8, 6).done();
+/// Every face of the building drawn in by `gap_m`, so that no two meet.
+Building loosened(Building building, double gap_m) {
   Geometry& geometry = building.geometries[0];
   for (const Polygon& polygon : geometry.polygons) {
     Point3 centre{};
@@ -52,6 +51,13 @@ Building loose_block(double gap_m, bool with_ground = true) {
       p = {inwards(p.x, centre.x), inwards(p.y, centre.y), inwards(p.z, centre.z)};
     }
   }
+  return building;
+}
+
+/// A block of 10 m by 8 m by 6 m.
+Building loose_block(double gap_m, bool with_ground = true) {
+  Building building = loosened(block(0, 0, 10, 8, 6).done(), gap_m);
+  Geometry& geometry = building.geometries[0];
   if (!with_ground) geometry.polygons.erase(geometry.polygons.begin());
   return building;
 }
@@ -121,6 +127,17 @@ TEST(Wrap, ASheetIsNoBody) {
   Draw upright;
   upright.wall({0, 0, 0}, {10, 0, 0}, 6);
   EXPECT_FALSE(wrapped(upright.done()));
+}
+
+TEST(Wrap, WhatIsBridgedIsWrappedMoreClosely) {
+  Draw draw;
+  for (const double x : {0.0, 1.35}) {
+    const auto wing = rectangle(x, 0, x + 1, 10);
+    draw.ground(wing).walls(wing, 6).flat_roof(wing, 6);
+  }
+  const auto shell = wrapped(loosened(draw.done(), 0.02));
+  ASSERT_TRUE(shell);
+  EXPECT_NEAR(gated_volume_m3(*shell), 2 * 60, 0.05 * 120);
 }
 
 TEST(Wrap, GivesTheSameEveryTime) {
