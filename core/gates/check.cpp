@@ -27,7 +27,7 @@ struct HalfEdge {
 constexpr std::uint64_t kMaxClashes = 10'000;
 
 /// Work limit: pairs whose boxes meet. No building comes near; what does is refused.
-constexpr std::uint64_t kMaxPairs = 20'000'000;
+constexpr std::uint64_t kMaxPairs = 1'000'000, kMaxPairsPerFace = 40;
 
 /// Counts what violates a gate and keeps the first place.
 class Finding {
@@ -253,6 +253,7 @@ class ShellCheck {
     const BoxTree tree(boxes);
 
     Finding clash("G4");
+    const std::uint64_t max_pairs = kMaxPairs + kMaxPairsPerFace * boxes.size();
     std::uint64_t pairs = 0;
     const auto corners = [&](std::uint32_t i) {
       const Triangle& f = faces_[distinct_[i]];
@@ -261,11 +262,11 @@ class ShellCheck {
     for (std::uint32_t i = 0; i < boxes.size() && clash.count() < kMaxClashes; ++i) {
       const auto own = corners(i);
       tree.for_each_meeting(boxes[i], [&](std::uint32_t other) {
-        if (other <= i || ++pairs > kMaxPairs || !triangles_clash(own, corners(other))) return;
+        if (other <= i || ++pairs > max_pairs || !triangles_clash(own, corners(other))) return;
         clash.add([&] { return place_text(own[0]) + " and " + place_text(corners(other)[0]); });
       });
-      if (pairs <= kMaxPairs) continue;
-      clash.add([] { return fmt::format("not known: over {} pairs are close", kMaxPairs); });
+      if (pairs <= max_pairs) continue;
+      clash.add([&] { return fmt::format("not known: over {} pairs are close", max_pairs); });
       break;
     }
     clash.append_to(failures);

@@ -28,6 +28,7 @@ constexpr double kSwollenShare = 1.15;   ///< of the columns under the roofs, ab
 constexpr double kSheet = 1000;          ///< steps; what lies closer above each other is one layer
 constexpr std::int64_t kColumns = 64;    ///< along either side of the box
 constexpr double kMaxLayers = 30;        ///< triangles above each other, on average
+constexpr double kMaxBoxes = 40;         ///< the same for their boxes
 constexpr double kCoveredShare = 0.9;    ///< of the footprint that has a ground
 constexpr double kSamePlane = 0.97;      ///< cosine
 constexpr double kMinHeight_m = 0.0015;  ///< of triangles, above what the gates take
@@ -373,7 +374,9 @@ std::optional<Shell> wrap(const Shell& input, const ReconstructOptions& options,
   if (height == 0) return {};
   const BoxTree tree(soup.boxes());
   const Columns columns = columns_through(soup, tree);
-  if (columns.footprint_m2 <= 0 || columns.layers > kMaxLayers || context.stopped()) return {};
+  if (columns.footprint_m2 <= 0 || columns.layers > kMaxLayers || columns.boxes > kMaxBoxes ||
+      context.stopped())
+    return {};
 
   std::vector<GridPoint> points = clean.points;
   std::vector<Triangle> triangles = soup.triangles();

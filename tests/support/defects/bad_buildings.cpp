@@ -167,7 +167,7 @@ Building tangled_ring(std::size_t corners) {
   Pile pile;
   Random random(3);
   Corners ring;
-  for (std::size_t i = 0; i < corners / 10; ++i) {
+  for (std::size_t i = 0; i < corners / 50; ++i) {
     const double x = random.between(0, 40), y = random.between(0, 40);
     ring.push_back({x, y, 5 + x / 4});
   }
