@@ -178,7 +178,7 @@ Building tangled_ring(std::size_t corners) {
 /// Upright walls around a star; nothing above, and below it a ring that runs the wrong way.
 Building open_star(std::size_t faces) {
   Pile pile;
-  const Corners below = star(faces / 10, 5), above = star(faces / 10, 25);
+  const Corners below = star(faces / 20, 5), above = star(faces / 20, 25);
   for (std::size_t i = 0, n = below.size(); i < n; ++i)
     pile.face({below[i], below[(i + 1) % n], above[(i + 1) % n], above[i]});
   pile.face(below);
@@ -212,7 +212,7 @@ Building stack_of_sheets(std::size_t faces) {
 /// Triangles from one corner to the next, each larger than the one before.
 Building fan_of_slivers(std::size_t faces) {
   Pile pile;
-  for (std::size_t i = 0; i < faces / 10; ++i) {
+  for (std::size_t i = 0; i < faces / 50; ++i) {
     const double y = 0.002 * static_cast<double>(i);
     pile.face({{0, 0, 0}, {100, y, 5}, {100, y + 0.002, 5}});
   }
