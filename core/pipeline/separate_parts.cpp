@@ -19,6 +19,7 @@
 #include "core/heal/heal.h"
 #include "core/pipeline/parts.h"
 #include "core/pipeline/round_trip_gate.h"
+#include "core/reconstruct/push_out.h"
 #include "core/reconstruct/share_space.h"
 #include "core/validate/body.h"
 #include "core/validate/validate.h"
@@ -32,6 +33,10 @@ using Cluster = std::vector<std::uint32_t>;
 /// Tried one after the other; walls that are nearly one need the larger ones.
 constexpr std::array kTolerances_m{0.0015, 0.005, 0.02, 0.05};
 
+/// Walls that reach no deeper into a neighbour are meant to be one with its wall.
+constexpr double kSliver_m = 0.05;
+constexpr std::size_t kPushes = 8;  ///< of two bodies in turn, each a little farther
+
 ClosedSurface surface_of(const TriangleMesh& mesh) {
   ClosedSurface surface{mesh.points, mesh.triangles, {}};
   if (mesh.points.empty()) return surface;
@@ -40,11 +45,19 @@ ClosedSurface surface_of(const TriangleMesh& mesh) {
   return surface;
 }
 
+/// How far corners of a body had to move out of another one.
+struct Push {
+  std::uint32_t from = 0;
+  double displacement_m = 0;
+  GridPoint at{};
+};
+
 /// What becomes of a body.
 struct Separated {
   TriangleMesh mesh{};  ///< empty: others have all of its space
   std::uint64_t fingerprint = 0;
   std::vector<Issue> issues{};
+  std::vector<Push> pushes{};
 };
 
 class Separation {
@@ -113,23 +126,89 @@ class Separation {
       });
   }
 
-  bool are_overlapping(std::uint32_t i, std::uint32_t j) const {
+  bool are_overlapping(std::uint32_t i, std::uint32_t j) {
     const Answer answer = interiors_overlap(surfaces_[i], surfaces_[j]);
     if (answer != Answer::Maybe) return answer == Answer::Yes;
     // Both have been cut along each other already, or they coincide in part: cutting them tells.
-    if (separated_[i] && separated_[j]) return false;
-    const Shell pair[] = {shell_of(bodies_[i].mesh), shell_of(bodies_[j].mesh)};
+    if (clusters_.root(i) == clusters_.root(j)) return false;
+    return have_common_space(mesh_of(i), mesh_of(j));
+  }
+
+  /// Cutting them along each other tells.
+  bool have_common_space(const TriangleMesh& a, const TriangleMesh& b) const {
+    const Shell pair[] = {shell_of(a), shell_of(b)};
     const auto shared = shared_space(pair, {}, context_);
     return shared && !shared->empty();
   }
 
-  /// All that the pairs join at once; where that fails pair by pair, as far as it goes.
-  void separate(const std::vector<Pair>& pairs, std::vector<char>& changed) {
+  /// Slivers are pushed away; what then still overlaps is cut, all at once or, where that fails,
+  /// pair by pair, as far as it goes.
+  void separate(const std::vector<Pair>& all, std::vector<char>& changed) {
+    std::vector<Pair> pairs;
+    for (const Pair& pair : all)
+      if (!push_apart(pair, changed)) pairs.push_back(pair);
+    if (pairs.empty()) return;
     if (pairs.size() > 1 && separate_joined(pairs, changed)) return;
     for (const Pair& pair : pairs)
       if (clusters_.root(pair.first) != clusters_.root(pair.second) &&
           !separate_joined({&pair, 1}, changed))
         refused_.insert(pair);
+  }
+
+  const TriangleMesh& mesh_of(std::uint32_t body) const {
+    return separated_[body] ? separated_[body]->mesh : bodies_[body].mesh;
+  }
+
+  /// Moves corners of one of the two, the larger first, or of both, until they have nothing in
+  /// common. False: they overlap by more than a sliver.
+  bool push_apart(const Pair& pair, std::vector<char>& changed) {
+    const double reach_m = std::min(kSliver_m, inputs_.max_displacement_m);
+    std::array<std::uint32_t, 2> bodies{pair.first, pair.second};
+    if (volume_of(bodies[0]) < volume_of(bodies[1])) std::swap(bodies[0], bodies[1]);
+    std::array<std::optional<Separated>, 2> pushed;
+    std::array<ClosedSurface, 2> surfaces{surfaces_[bodies[0]], surfaces_[bodies[1]]};
+    std::size_t idle = 0;  // turns since a corner moved
+    for (std::size_t turn = 0; turn < kPushes; ++turn) {
+      const std::size_t k = turn % 2;
+      const TriangleMesh& mesh = pushed[k] ? pushed[k]->mesh : mesh_of(bodies[k]);
+      auto out = push_out({mesh.points, mesh.triangles},
+                          {surfaces[1 - k].points, surfaces[1 - k].triangles}, reach_m,
+                          2 + static_cast<double>(turn));
+      if (out) {
+        Shell shell = shell_of(mesh);
+        shell.points = std::move(out->points);
+        auto fit = fitted(std::move(shell));
+        if (!fit) return false;
+        fit->pushes = pushed[k] ? pushed[k]->pushes : pushes_of(bodies[k]);
+        fit->pushes.push_back({bodies[1 - k], out->displacement_m, out->at});
+        pushed[k] = std::move(fit);
+        surfaces[k] = surface_of(pushed[k]->mesh);
+      }
+      const Answer answer = interiors_overlap(surfaces[0], surfaces[1]);
+      idle = out ? 0 : idle + 1;
+      const bool nothing_left = idle == 2;
+      if (answer == Answer::Yes && nothing_left) return false;
+      if (answer == Answer::Yes || (answer == Answer::Maybe && !nothing_left)) continue;
+      if (answer == Answer::Maybe &&
+          have_common_space(pushed[0] ? pushed[0]->mesh : mesh_of(bodies[0]),
+                            pushed[1] ? pushed[1]->mesh : mesh_of(bodies[1])))
+        return false;
+      for (std::size_t i = 0; i < 2; ++i) {
+        if (!pushed[i]) continue;
+        surfaces_[bodies[i]] = surface_of(pushed[i]->mesh);
+        separated_[bodies[i]] = std::move(pushed[i]);
+        changed[bodies[i]] = 1;
+      }
+      return true;
+    }
+    return false;
+  }
+
+  double volume_of(std::uint32_t body) const {
+    return volume_m3(surfaces_[body].points, surfaces_[body].triangles);
+  }
+  std::vector<Push> pushes_of(std::uint32_t body) const {
+    return separated_[body] ? separated_[body]->pushes : std::vector<Push>{};
   }
 
   bool separate_joined(std::span<const Pair> pairs, std::vector<char>& changed) {
@@ -156,19 +235,9 @@ class Separation {
     if (!shared) return false;
     std::vector<Separated> results;
     for (Shell& shell : shared->bodies) {
-      Separated& result = results.emplace_back();
-      if (shell.faces.empty()) continue;
-      RoundTripGate gate(formats_);
-      std::vector<GridPoint> cuts;
-      if (!make_fit(shell, inputs_.planarity_tolerance_m, std::ref(gate), cuts).empty())
-        return false;
-      result.issues = validate(shell, {.snap_tolerance_m = inputs_.snap_tolerance_m,
-                                       .planarity_tolerance_m = inputs_.planarity_tolerance_m});
-      if (std::any_of(result.issues.begin(), result.issues.end(),
-                      [](const Issue& issue) { return is_defect(issue.code); }))
-        return false;
-      result.mesh = gate.take_mesh();
-      result.fingerprint = gate.fingerprint();
+      auto fit = shell.faces.empty() ? Separated{} : fitted(std::move(shell));
+      if (!fit) return false;
+      results.push_back(std::move(*fit));
     }
     for (std::size_t k = 0; k < cluster.size(); ++k) {
       surfaces_[cluster[k]] = surface_of(results[k].mesh);
@@ -180,6 +249,22 @@ class Separation {
       spaces_[cluster[space.from]].back().to = cluster[space.to];
     }
     return true;
+  }
+
+  /// Through the delivery gates and without defects, or not at all.
+  std::optional<Separated> fitted(Shell shell) const {
+    RoundTripGate gate(formats_);
+    std::vector<GridPoint> cuts;
+    if (!make_fit(shell, inputs_.planarity_tolerance_m, std::ref(gate), cuts).empty()) return {};
+    Separated result;
+    result.issues = validate(shell, {.snap_tolerance_m = inputs_.snap_tolerance_m,
+                                     .planarity_tolerance_m = inputs_.planarity_tolerance_m});
+    if (std::any_of(result.issues.begin(), result.issues.end(),
+                    [](const Issue& issue) { return is_defect(issue.code); }))
+      return {};
+    result.mesh = gate.take_mesh();
+    result.fingerprint = gate.fingerprint();
+    return result;
   }
 
   const std::vector<Body>& bodies_;
@@ -253,6 +338,17 @@ void separate_parts(BuildingReport& report, std::vector<Body>& bodies,
       note(i, "given to", space.to);
       note(space.to, "taken from", i);
     }
+
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    if (!separation.separated(i)) continue;
+    PartReport& part = report_of(report, bodies[i]);
+    for (const Push& push : separation.separated(i)->pushes) {
+      part.max_displacement_m = std::max(part.max_displacement_m, push.displacement_m);
+      report.max_displacement_m = std::max(report.max_displacement_m, push.displacement_m);
+      part.repairs.push_back(
+          {"pushed_apart", "out of " + names[push.from], push.displacement_m, to_metres(push.at)});
+    }
+  }
 
   std::vector<Body> left;
   std::vector<std::uint64_t> marks;
