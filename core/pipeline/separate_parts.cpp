@@ -35,7 +35,11 @@ constexpr std::array kTolerances_m{0.0015, 0.005, 0.02, 0.05};
 
 /// Walls that reach no deeper into a neighbour are meant to be one with its wall.
 constexpr double kSliver_m = 0.05;
-constexpr std::size_t kPushes = 8;  ///< of two bodies in turn, each a little farther
+// Two bodies are pushed in turn, each time a little farther: where one gives way its faces tilt,
+// and may reach into the other elsewhere.
+constexpr std::size_t kPushes = 10;
+constexpr double kClearance = 2;  ///< steps
+constexpr double kGrowth = 1.5;
 
 ClosedSurface surface_of(const TriangleMesh& mesh) {
   ClosedSurface surface{mesh.points, mesh.triangles, {}};
@@ -168,12 +172,12 @@ class Separation {
     std::array<std::optional<Separated>, 2> pushed;
     std::array<ClosedSurface, 2> surfaces{surfaces_[bodies[0]], surfaces_[bodies[1]]};
     std::size_t idle = 0;  // turns since a corner moved
-    for (std::size_t turn = 0; turn < kPushes; ++turn) {
+    double clearance = kClearance;
+    for (std::size_t turn = 0; turn < kPushes; ++turn, clearance *= kGrowth) {
       const std::size_t k = turn % 2;
       const TriangleMesh& mesh = pushed[k] ? pushed[k]->mesh : mesh_of(bodies[k]);
       auto out = push_out({mesh.points, mesh.triangles},
-                          {surfaces[1 - k].points, surfaces[1 - k].triangles}, reach_m,
-                          2 + static_cast<double>(turn));
+                          {surfaces[1 - k].points, surfaces[1 - k].triangles}, reach_m, clearance);
       if (out) {
         Shell shell = shell_of(mesh);
         shell.points = std::move(out->points);
