@@ -31,5 +31,6 @@ cmake --preset dev -B build/tidy -DCITYMESH_PRECOMPILE=OFF -DCITYMESH_TESTS=OFF 
   || { cat build/.configure-tidy.log >&2; exit 1; }
 if [ -d proto ]; then cmake --build build/tidy --target citymesh_proto >/dev/null; fi
 echo "clang-tidy: ${#sources[@]} sources changed since $base"
+# The database names GCC's warnings, and GCC's kind of coroutines is what Boost.Asio looks for.
 printf '%s\n' "${sources[@]}" | xargs -P "$(nproc)" -n 1 "$tidy" -p build/tidy --quiet --warnings-as-errors='*' \
-  --extra-arg=-Wno-unknown-warning-option  # the database names GCC's warnings
+  --extra-arg=-Wno-unknown-warning-option --extra-arg=-DBOOST_ASIO_HAS_CO_AWAIT

@@ -322,6 +322,7 @@ void separate_parts(BuildingReport& report, std::vector<Body>& bodies,
                     const std::vector<OpenFormat>& formats, const RunContext& context) {
   if (std::count_if(bodies.begin(), bodies.end(), is_part) < 2) return;
   std::vector<std::string> names;
+  names.reserve(bodies.size());
   for (const Body& body : bodies) names.push_back(body.gml_id.empty() ? body.name : body.gml_id);
   Separation separation(bodies, inputs, formats, context);
   separation.run();

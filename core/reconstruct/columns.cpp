@@ -198,6 +198,7 @@ class Boundary {
       } while (path.size() > 1 || leaving.contains(path.back()));
     }
     std::vector<std::vector<std::vector<std::uint32_t>>> areas;
+    areas.reserve(exteriors.size());
     for (auto& exterior : exteriors) areas.push_back({std::move(exterior)});
     for (auto& hole : holes)
       for (auto& area : areas)

@@ -52,6 +52,7 @@ Level::Level(const Shell& shell, const Face& face) {
   plane_.at = {corners_[0].x, corners_[0].y};
   if (triangles_.empty()) {  // a ring that crosses itself has no useful normal
     std::vector<Sounding> soundings;
+    soundings.reserve(corners_.size());
     for (const GridPoint& p : corners_) soundings.push_back({project(p, Axis::Z), {p.z}});
     if (const auto plane = consensus(soundings, kFlatness, 0)) {
       plane_ = *plane;

@@ -266,6 +266,7 @@ class Rebuild {
   void sound() {
     soundings_.assign(partition_.vertices.size(), {});
     std::vector<GridBox> boxes;
+    boxes.reserve(partition_.vertices.size());
     for (const GridPoint2& p : partition_.vertices) boxes.push_back(GridBox::of({p.x, p.y, 0}));
     const BoxTree tree(boxes);
     std::set<std::uint32_t> used;
@@ -356,6 +357,7 @@ class Rebuild {
         for (const std::uint32_t c : cells) tops_[c] = level;
       } else if (highest > ground + kSameLayer && !soundings.empty()) {
         std::vector<std::int64_t> tops;
+        tops.reserve(soundings.size());
         for (const Sounding& sounding : soundings) tops.push_back(sounding.z.back());
         std::nth_element(tops.begin(), tops.begin() + static_cast<std::ptrdiff_t>(tops.size() / 2),
                          tops.end());

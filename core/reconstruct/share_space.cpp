@@ -141,6 +141,7 @@ class Sharing {
   /// Bodies in the order in which they choose: the smallest first.
   std::vector<std::uint32_t> order(const std::vector<Inside>& inside) const {
     std::vector<double> volume;
+    volume.reserve(inside.size());
     for (const Inside& body : inside)
       volume.push_back(volume_between([&](std::size_t f) { return body.front[f]; },
                                       [&](std::size_t f) { return body.back[f]; }));

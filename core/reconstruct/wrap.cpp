@@ -387,6 +387,7 @@ std::optional<Shell> wrap(const Shell& input, const ReconstructOptions& options,
                                       static_cast<double>(height) * kGridStep_m / 4);
 
   std::vector<Point3> places;
+  places.reserve(points.size());
   for (const GridPoint& p : points) places.push_back(to_metres(p));
   const Planes planes(soup, tree);
   double alpha_m = std::max(kMinAlpha_m, std::sqrt(soup.box_area_m2() / kBalls)) *

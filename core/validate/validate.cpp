@@ -116,7 +116,7 @@ class GeometryCheck {
         shells.push_back(boundary(solid.interiors[i], fmt::format("{}shell {}, ", of, i + 1)));
       const bool empty = std::any_of(shells.begin(), shells.end(),
                                      [](const Boundary& shell) { return shell.polygons.empty(); });
-      const std::string name =
+      std::string name =
           several ? fmt::format("{} solid {}", building_.gml_id, s) : building_.gml_id;
       if (empty)
         findings_.add(902, [&] { return name; }, 0, {});

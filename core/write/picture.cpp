@@ -54,6 +54,7 @@ GroundPlane ground_plane(const std::vector<DrawnBlock>& blocks) {
   }
   // Few feet may stand below the ground, or it would seem to float over them.
   std::vector<double> above;
+  above.reserve(feet.size());
   for (const Point3& p : feet) above.push_back(p.z - plane.at(p.x, p.y));
   const auto low = above.begin() + static_cast<std::ptrdiff_t>(above.size() / 20);
   std::nth_element(above.begin(), low, above.end());

@@ -209,7 +209,7 @@ Result<std::uint16_t> RestServer::Impl::start() {
   }
 
   handlers.emplace(std::max(1U, options.handler_threads));
-  asio::co_spawn(acceptor->get_executor(), accept_all(), [](std::exception_ptr) {});
+  asio::co_spawn(acceptor->get_executor(), accept_all(), [](const std::exception_ptr&) {});
   for (unsigned i = 0; i < std::max(1U, options.io_threads); ++i)
     threads.emplace_back([this] { io.run(); });
   return port;
@@ -265,7 +265,7 @@ awaitable<void> RestServer::Impl::accept_all() {
     auto session = std::make_shared<Session>(std::move(socket));
     const bool room = enter(session);
     asio::co_spawn(session->stream.get_executor(), room ? serve(session) : refuse(session),
-                   [this, session](std::exception_ptr) { leave(session); });
+                   [this, session](const std::exception_ptr&) { leave(session); });
   }
 }
 
