@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/pipeline/pipeline.h"
+#include "services/jobs/retention.h"
 #include "services/rest/documents.h"
 #include "services/rest/problem.h"
 
@@ -35,8 +36,13 @@ Response job_error(const Error& error, std::string_view accept) {
   return problem_response(kind, error.message, accept);
 }
 
-Response not_successful(const Job& job, std::string_view base, std::string_view accept) {
+std::optional<Response> without_results(const Job& job, std::string_view base,
+                                        std::string_view accept) {
   switch (job.state) {
+    case JobState::Successful:
+      if (!has_expired(job)) return std::nullopt;
+      return problem_response(problems::kResultNotAvailable,
+                              fmt::format("job {}: its {}", job.id, job.message), accept);
     case JobState::Failed: {
       const auto error = job.error.value_or(Error{ErrorCode::Internal, job.message});
       return problem_response(failed_job_kind(error.code), error.message, accept,
@@ -46,13 +52,14 @@ Response not_successful(const Job& job, std::string_view base, std::string_view 
       return problem_response(problems::kResultNotAvailable,
                               fmt::format("job {} was dismissed and has no results", job.id),
                               accept);
-    default:
-      return problem_response(
-          problems::kResultNotReady,
-          fmt::format("job {} is {}; its results are there once it is successful", job.id,
-                      to_string(job.state)),
-          accept);
+    case JobState::Accepted:
+    case JobState::Running:
+      break;
   }
+  return problem_response(problems::kResultNotReady,
+                          fmt::format("job {} is {}; its results are there once it is successful",
+                                      job.id, to_string(job.state)),
+                          accept);
 }
 
 }  // namespace citymesh

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -19,8 +20,9 @@ Response json_response(std::string body, int status = 200);
 /// Why a job cannot be had.
 Response job_error(const Error& error, std::string_view accept);
 
-/// Why a job has no results: not yet, failed or dismissed.
-Response not_successful(const Job& job, std::string_view base, std::string_view accept);
+/// Why a job has no results: not yet, failed, dismissed or expired. Nothing when it has some.
+std::optional<Response> without_results(const Job& job, std::string_view base,
+                                        std::string_view accept);
 
 /// A problem that names the processes there are.
 Response no_such_process(std::string_view id, std::string_view accept);

@@ -88,16 +88,16 @@ Response Api::execute(const Call& call) const {
     Response answer;
     if (!now) {
       answer = job_error(now.error(), accept);
-    } else if (now->state == JobState::Successful) {
+    } else if (!is_final(now->state)) {
+      answer = accepted(base, *now, mode.applied_to_job);
+    } else if (auto without = without_results(*now, base, accept)) {
+      answer = *std::move(without);
+    } else {
       answer = values_response(jobs_, *now, base, accept, options_.max_inline_bytes);
       if (!mode.applied_to_results.empty())
         answer.headers.set("Preference-Applied", mode.applied_to_results);
       // No `Link`: clients take any in an answer of 200 for the monitor, brackets included.
       answer.headers.set("Content-Location", job_url(base, *now) + "/results");
-    } else if (is_final(now->state)) {
-      answer = not_successful(*now, base, accept);
-    } else {
-      answer = accepted(base, *now, mode.applied_to_job);
     }
     return FollowStep{{}, std::make_shared<Response>(std::move(answer)), true};
   };

@@ -97,7 +97,7 @@ Response Api::dismiss(const Call& call) const {
 Response Api::results(const Call& call) const {
   const auto job = find_job(call);
   if (!job) return job_error(job.error(), call.accept);
-  if (job->state != JobState::Successful) return not_successful(*job, call.base, call.accept);
+  if (auto answer = without_results(*job, call.base, call.accept)) return *std::move(answer);
   if (wants_page(call.accept, call.target.query))
     return page_response(200, job_page(call.base, *job));
   return conditional(
@@ -109,10 +109,11 @@ Response Api::results(const Call& call) const {
 Response Api::result(const Call& call) const {
   const auto job = find_job(call);
   if (!job) return job_error(job.error(), call.accept);
-  if (job->state != JobState::Successful) return not_successful(*job, call.base, call.accept);
+  if (auto answer = without_results(*job, call.base, call.accept)) return *std::move(answer);
   const auto* file = find_result(*job, call.values[1]);
   if (file == nullptr) {
     std::vector<std::string_view> names;
+    names.reserve(job->results.size());
     for (const auto& result : job->results) names.push_back(result.file_name);
     return problem_response(problems::kNoSuchOutput,
                             fmt::format("job {} has no output '{}'; available: {}", job->id,

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/version.h"
+#include "services/jobs/retention.h"
 #include "services/rest/links.h"
 #include "services/rest/message.h"
 #include "services/rest/problem.h"
@@ -29,7 +30,7 @@ Json job_links(std::string_view base, const Job& job) {
   if (job.state == JobState::Failed)
     links.push_back(link_json<Json>(self + "/results", rel::kExceptions, "application/problem+json",
                                     "Why the job failed"));
-  if (job.state != JobState::Successful) return links;
+  if (job.state != JobState::Successful || has_expired(job)) return links;
   links.push_back(link_json<Json>(self + "/results", rel::kResults, kJson, "Results"));
   for (const auto& file : job.results) {
     auto link =

@@ -212,7 +212,7 @@ std::string job_page(std::string_view base, const Job& job) {
   std::string html = fmt::format(
       "<h1>{}</h1><p><progress max=\"100\" value=\"{}\"></progress></p><table>{}</table>",
       escape_html(job.spec.process), job.percent, rows);
-  if (job.state == JobState::Successful) html += results_section(base, job);
+  if (!job.results.empty()) html += results_section(base, job);
   html += fmt::format("<h2>Inputs</h2><pre>{}</pre>", escape_html(job.spec.inputs_json));
   return page(base, job.spec.process, html,
               is_final(job.state) ? "" : "<meta http-equiv=\"refresh\" content=\"2\">");

@@ -8,6 +8,7 @@
 #include "citymesh/v1/jobs.grpc.pb.h"
 #include "core/pipeline/pipeline.h"
 #include "services/jobs/job_manager.h"
+#include "services/jobs/retention.h"
 #include "services/rpc/server.h"
 #include "services/stores/embedded_store.h"
 #include "services/stores/folder_results.h"
@@ -73,6 +74,7 @@ class RpcServerTest : public testing::Test {
     ASSERT_TRUE(results_->commit(claim.job_id, claim.attempt));
     ASSERT_TRUE(store_->update(claim.job_id, claim.attempt, [&](Job& job) {
       job.state = JobState::Successful;
+      job.finished = now_ms();
       job.results = {{"obj", "model.obj", "model/obj", mesh.size()}};
     }));
     ASSERT_TRUE(store_->done(claim));
@@ -232,6 +234,23 @@ TEST_F(RpcServerTest, ResultsComeInChunksByOutputOrFileName) {
     EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND) << name;
     EXPECT_THAT(status.error_message(), HasSubstr("model.obj"));
   }
+}
+
+TEST_F(RpcServerTest, ResultsThatHaveExpiredAreNotFoundAndNotListed) {
+  const auto id = submitted();
+  succeed(started(), "v 0 0 0\n");
+  ASSERT_TRUE(sweep(*store_, *results_, {.keep_results_ms = 1}, now_ms() + 1'000));
+  const auto [status, bytes] = fetch(id, "obj");
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND);
+  EXPECT_THAT(status.error_message(), HasSubstr("job " + id + ": its results have expired"));
+  EXPECT_EQ(bytes, "");
+
+  grpc::ClientContext context;
+  v1::Job job;
+  ASSERT_TRUE(stub_->Get(&context, id_of(id), &job).ok());
+  EXPECT_EQ(job.state(), v1::SUCCESSFUL);
+  EXPECT_EQ(job.message(), "results have expired");
+  EXPECT_EQ(job.results_size(), 0);
 }
 
 TEST_F(RpcServerTest, CallsAreCounted) {

@@ -15,6 +15,7 @@ using nlohmann::json;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::StartsWith;
 
@@ -307,6 +308,24 @@ TEST_F(RestApi, DismissOfASuccessfulJobIsAConflictAndKeepsItsResults) {
   const auto id = finished(kBox);
   EXPECT_THAT(detail(send("DELETE", "/jobs/" + id), 409), HasSubstr("successful"));
   EXPECT_EQ(get("/jobs/" + id + "/results").status, 200);
+}
+
+TEST_F(RestApi, ResultsThatHaveExpiredAreNeitherServedNorLinked) {
+  const auto id = finished(kBox);
+  service_.expire_results();
+  for (const auto* path : {"/results", "/results/obj", "/results/model.obj", "/results/none"}) {
+    const auto expired = problem(get("/jobs/" + id + path), 404);
+    EXPECT_EQ(expired["type"], kExceptions + "result-not-available") << path;
+    EXPECT_THAT(expired["detail"].get<std::string>(), HasSubstr("results have expired"));
+  }
+  const auto status = document(get("/jobs/" + id));
+  EXPECT_EQ(status["status"], "successful");
+  EXPECT_EQ(status["message"], "results have expired");
+  EXPECT_THAT(links(status, "http://www.opengis.net/def/rel/ogc/1.0/results"), IsEmpty());
+  EXPECT_THAT(links(status, "item"), IsEmpty());
+  const auto page = text(get("/jobs/" + id, {{"Accept", "text/html"}}));
+  EXPECT_THAT(page, HasSubstr("results have expired"));
+  EXPECT_THAT(page, Not(HasSubstr("<h2>Results</h2>")));
 }
 
 TEST_F(RestApi, UnknownJobIsNoSuchJobForEveryVerb) {

@@ -136,6 +136,13 @@ TEST_F(RestExecution, DismissedMeanwhileThereAreNoResults) {
   EXPECT_EQ(problem(*step(response), 404)["type"], kExceptions + "result-not-available");
 }
 
+TEST_F(RestExecution, ExpiredMeanwhileThereAreNoResults) {
+  const auto response = execute(kValidate);
+  service_.succeed(service_.start(), JobService::export_files());
+  service_.expire_results();
+  EXPECT_EQ(problem(*step(response), 404)["type"], kExceptions + "result-not-available");
+}
+
 TEST_F(RestExecution, AtTheEndOfTheWaitTheJobIsTheAnswerAndGoesOn) {
   const auto response = execute(kValidate);
   const auto answer = step(response, true);

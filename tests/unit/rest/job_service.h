@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "services/jobs/job_manager.h"
+#include "services/jobs/retention.h"
 #include "services/stores/embedded_store.h"
 #include "services/stores/folder_results.h"
 #include "services/telemetry/metrics.h"
@@ -96,6 +97,11 @@ class JobService {
       job.message = error.message;
     }));
     must(store_->done(claim));
+  }
+
+  /// Time passes, until the results of all ended jobs are gone.
+  void expire_results() {
+    must(sweep(*store_, *results_, {.keep_results_ms = 1}, now_ms() + 1'000));
   }
 
   /// A successful job of every always-written file and an OBJ, submitted with `spec`.
