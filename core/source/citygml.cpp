@@ -53,8 +53,6 @@ void CityGmlParser::on_start(const XmlName& name, const XmlAttributes& attribute
       return start_geometry_member(element, attributes);
     case Ctx::GeometryMember:
     case Ctx::GeometryProperty:
-      if (!start_geometry(element, attributes)) skip();
-      return;
     case Ctx::RelativeProperty:
       if (!start_geometry(element, attributes)) skip();
       return;

@@ -230,7 +230,7 @@ class ShellCheck {
       const HalfEdge& edge = open[hole.first];
       findings_.add(
           302,
-          [&, &hole = hole, root = root] {
+          [&, root = root] {
             std::string where = fmt::format("{}edge {} of {}", boundary_.name, edge_text(edge),
                                             label(polygon(edge)));
             for (std::size_t i = 0; i < open.size(); ++i)
