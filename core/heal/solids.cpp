@@ -3,6 +3,7 @@
 
 #include "core/base/union_find.h"
 #include "core/geometry/locate.h"
+#include "core/geometry/measure.h"
 #include "core/geometry/triangulation.h"
 #include "core/heal/steps.h"
 
@@ -36,11 +37,16 @@ std::vector<Component> components_of(const Shell& shell) {
   return components;
 }
 
-bool contains(const Shell& shell, const Component& outer, const Component& inner) {
+std::vector<Triangle> triangles_of(const Shell& shell, const Component& component) {
   std::vector<Triangle> triangles;
-  for (const std::uint32_t f : outer.faces)
+  for (const std::uint32_t f : component.faces)
     if (const auto found = triangulate(shell.points, shell.faces[f].rings))
       triangles.insert(triangles.end(), found->begin(), found->end());
+  return triangles;
+}
+
+bool contains(const Shell& shell, const Component& outer, const Component& inner) {
+  const std::vector<Triangle> triangles = triangles_of(shell, outer);
   const GridPoint& place = shell.points[shell.faces[inner.faces[0]].rings[0][0]];
   return Locator(shell.points, triangles).locate(place) == Side::Inside;
 }
@@ -53,21 +59,31 @@ void group_solids(Shell& shell) {
   };
   if (std::any_of(shell.faces.begin(), shell.faces.end(), is_empty)) return;
   std::vector<Component> components = components_of(shell);
-  const auto exteriors = std::count_if(components.begin(), components.end(),
-                                       [](const Component& c) { return !c.cavity; });
-  if (exteriors < 2) return;
+  if (components.size() < 2) return;
+  // A hollow that a step has made looks inwards without being called a cavity.
+  std::vector<char> inward;
+  inward.reserve(components.size());
+  for (const Component& component : components)
+    inward.push_back(component.cavity || volume6(shell.points, triangles_of(shell, component)) < 0);
   std::size_t next = 0;
-  for (Component& component : components)
-    if (!component.cavity) component.exterior = next++;
-  for (Component& cavity : components) {
-    if (!cavity.cavity) continue;
+  for (std::size_t c = 0; c < components.size(); ++c)
+    if (!inward[c]) components[c].exterior = next++;
+  for (std::size_t c = 0; c < components.size(); ++c) {
+    if (!inward[c]) continue;
+    Component& cavity = components[c];
     // Of nested ones the innermost.
     const Component* host = nullptr;
-    for (const Component& outer : components)
-      if (!outer.cavity && contains(shell, outer, cavity) &&
-          (!host || contains(shell, *host, outer)))
-        host = &outer;
-    if (host) cavity.exterior = host->exterior;
+    for (std::size_t o = 0; o < components.size(); ++o)
+      if (!inward[o] && contains(shell, components[o], cavity) &&
+          (!host || contains(shell, *host, components[o])))
+        host = &components[o];
+    if (host) {
+      cavity.exterior = host->exterior;
+      cavity.cavity = true;
+      for (const std::uint32_t f : cavity.faces) shell.faces[f].cavity = true;
+    } else if (!cavity.cavity) {
+      cavity.exterior = next++;
+    }
   }
   std::stable_sort(components.begin(), components.end(),
                    [](const Component& a, const Component& b) {

@@ -1,6 +1,7 @@
 #include "core/heal/steps.h"
 
 #include <gtest/gtest.h>
+#include "tests/support/shapes.h"
 
 namespace citymesh {
 namespace {
@@ -123,6 +124,28 @@ TEST(DropInnerSheets, AWallThroughABoxGoesWhetherItSharesCornersOrNot) {
   drop_inner_sheets(shell, context);
   EXPECT_EQ(shell.faces.size(), 5u);
   EXPECT_EQ(context.repairs.size(), 2u);
+}
+
+TEST(GroupSolids, AHollowThatLooksInwardsBecomesACavityOfItsHost) {
+  Shell shell;
+  shell.surface_ids = {""};
+  const auto add = [&](const testing::Triangles& triangles) {
+    const auto first = static_cast<std::uint32_t>(shell.points.size());
+    shell.points.insert(shell.points.end(), triangles.points.begin(), triangles.points.end());
+    for (const Triangle& t : triangles.triangles) {
+      Face& face = shell.faces.emplace_back();
+      face.rings = {{t[0] + first, t[1] + first, t[2] + first}};
+    }
+  };
+  add(testing::box({20'000, 20'000, 20'000}, {30'000, 30'000, 30'000}).turn());  // the hollow
+  add(testing::box({0, 0, 0}, {100'000, 100'000, 100'000}));
+  add(testing::box({200'000, 0, 0}, {300'000, 100'000, 100'000}));
+  group_solids(shell);
+  ASSERT_EQ(shell.faces.size(), 36u);
+  for (std::size_t f = 0; f < 36; ++f) {
+    EXPECT_EQ(shell.faces[f].cavity, f >= 12 && f < 24) << f;
+    if (f >= 12 && f < 24) EXPECT_LT(shell.faces[f].rings[0][0], 8u);
+  }
 }
 
 }  // namespace
