@@ -150,7 +150,8 @@ class Separation {
   void separate(const std::vector<Pair>& all, std::vector<char>& changed) {
     std::vector<Pair> pairs;
     for (const Pair& pair : all)
-      if (!push_apart(pair, changed)) pairs.push_back(pair);
+      if (!push_apart(pair, changed) && !push_apart({pair.second, pair.first}, changed))
+        pairs.push_back(pair);
     if (pairs.empty()) return;
     if (pairs.size() > 1 && separate_joined(pairs, changed)) return;
     for (const Pair& pair : pairs)
@@ -163,12 +164,11 @@ class Separation {
     return separated_[body] ? separated_[body]->mesh : bodies_[body].mesh;
   }
 
-  /// Moves corners of one of the two, the larger first, or of both, until they have nothing in
-  /// common. False: they overlap by more than a sliver.
+  /// Moves corners of one of the two, the first one first, or of both, until they have nothing in
+  /// common. False: they overlap by more than a sliver, or it does not come to an end.
   bool push_apart(const Pair& pair, std::vector<char>& changed) {
     const double reach_m = std::min(kSliver_m, inputs_.max_displacement_m);
-    std::array<std::uint32_t, 2> bodies{pair.first, pair.second};
-    if (volume_of(bodies[0]) < volume_of(bodies[1])) std::swap(bodies[0], bodies[1]);
+    const std::array<std::uint32_t, 2> bodies{pair.first, pair.second};
     std::array<std::optional<Separated>, 2> pushed;
     std::array<ClosedSurface, 2> surfaces{surfaces_[bodies[0]], surfaces_[bodies[1]]};
     std::size_t idle = 0;  // turns since a corner moved
@@ -208,9 +208,6 @@ class Separation {
     return false;
   }
 
-  double volume_of(std::uint32_t body) const {
-    return volume_m3(surfaces_[body].points, surfaces_[body].triangles);
-  }
   std::vector<Push> pushes_of(std::uint32_t body) const {
     return separated_[body] ? separated_[body]->pushes : std::vector<Push>{};
   }
