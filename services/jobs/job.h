@@ -66,6 +66,9 @@ struct Job {
   TimeMs updated = 0;  ///< grows with every change of the job
   std::optional<TimeMs> started{}, finished{};
   std::vector<ResultFile> results{};  ///< when successful
+  /// By which its client knows the request again when it repeats it; empty: never. No two jobs have
+  /// the same.
+  std::string idempotency_key{};
 };
 
 struct JobFilter {

@@ -73,7 +73,7 @@ JobManager::JobManager(JobStore& jobs, TaskQueue& queue, ResultStore& results,
   });
 }
 
-Result<Job> JobManager::submit(JobSpec spec) {
+Result<Job> JobManager::submit(JobSpec spec, std::string idempotency_key) {
   const auto* process = find_process(spec.process);
   if (process == nullptr)
     return fail(ErrorCode::NotFound, fmt::format("process '{}' does not exist; available: {}",
@@ -90,22 +90,42 @@ Result<Job> JobManager::submit(JobSpec spec) {
   job.spec = std::move(spec);
   job.message = "queued";
   job.created = job.updated = now_ms();
+  job.idempotency_key = std::move(idempotency_key);
 
   {
     const std::scoped_lock lock(submit_mutex_);
+    if (!job.idempotency_key.empty()) {
+      auto first = repeated(job);
+      if (first || first.error().code != ErrorCode::NotFound) return first;
+    }
     const auto open = jobs_.count_open();
     if (!open) return open.error();
     if (*open >= options_.max_open_jobs)
       return fail(ErrorCode::ResourceExhausted,
                   fmt::format("{} jobs are open and at most {} may be; try again later", *open,
                               options_.max_open_jobs));
-    if (auto stored = jobs_.insert(job); !stored) return stored.error();
+    if (auto stored = jobs_.insert(job); !stored) {
+      // Another process has just taken the same key.
+      if (stored.error().code == ErrorCode::AlreadyExists) return repeated(job);
+      return stored.error();
+    }
   }
   if (auto queued = queue_.push(job.id); !queued) {
     (void)jobs_.erase(job.id);  // never leave a job behind that nobody works on
     return queued.error();
   }
   return job;
+}
+
+/// The job that a request with the key of `job` got before.
+Result<Job> JobManager::repeated(const Job& job) {
+  auto first = jobs_.get_by_key(job.idempotency_key);
+  if (first && first->spec != job.spec)
+    return fail(ErrorCode::AlreadyExists,
+                fmt::format("idempotency key '{}' belongs to job {}, which asked for something "
+                            "else; expected the same request again or a new key",
+                            job.idempotency_key, first->id));
+  return first;
 }
 
 Result<Job> JobManager::get(const std::string& id) { return jobs_.get(id); }

@@ -34,7 +34,10 @@ class JobManager {
   /// for an unknown process, InvalidArgument for inputs or outputs, ResourceExhausted.
   /// Requested outputs that are formats are added to the input `formats`, or are the formats where
   /// the request states none.
-  Result<Job> submit(JobSpec spec);
+  /// With an idempotency key a repeated request gets the job of the first one, also when that has
+  /// ended. AlreadyExists when the first one asked for something else. The key is free again once
+  /// the job is forgotten.
+  Result<Job> submit(JobSpec spec, std::string idempotency_key = {});
   Result<Job> get(const std::string& id);
   Result<std::vector<Job>> list(const JobFilter& filter);
   Result<std::uint64_t> count(const JobFilter& filter);
@@ -67,6 +70,7 @@ class JobManager {
 
   Result<Job> wait_until(const std::string& id, TimeMs wait_ms,
                          const std::function<bool(const Job&)>& enough);
+  Result<Job> repeated(const Job& job);
 
   JobStore& jobs_;
   TaskQueue& queue_;

@@ -21,9 +21,11 @@ class JobStore {
  public:
   virtual ~JobStore() = default;
 
+  /// AlreadyExists when there is a job with its id or its idempotency key.
   virtual Result<void> insert(const Job& job) = 0;
-  virtual Result<Job> get(const std::string& id) = 0;                  ///< NotFound
-  virtual Result<std::vector<Job>> list(const JobFilter& filter) = 0;  ///< newest first
+  virtual Result<Job> get(const std::string& id) = 0;                      ///< NotFound
+  virtual Result<Job> get_by_key(const std::string& idempotency_key) = 0;  ///< NotFound
+  virtual Result<std::vector<Job>> list(const JobFilter& filter) = 0;      ///< newest first
   /// How many jobs match; limit and offset of the filter do not count.
   virtual Result<std::uint64_t> count(const JobFilter& filter) = 0;
 

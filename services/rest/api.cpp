@@ -20,9 +20,8 @@ namespace citymesh {
 namespace {
 
 constexpr std::string_view kAllowedHeaders =
-    "Accept, Authorization, Content-Type, If-Match, If-None-Match, If-Range, Last-Event-ID, "
-    "Prefer, "
-    "Range";
+    "Accept, Authorization, Content-Type, Idempotency-Key, If-Match, If-None-Match, If-Range, "
+    "Last-Event-ID, Prefer, Range";
 constexpr std::string_view kExposedHeaders =
     "Location, Content-Location, Link, Preference-Applied, Content-Disposition, ETag, "
     "Content-Range, "

@@ -49,6 +49,26 @@ bool is_json(std::string_view content_type) {
   return type.empty() || type == "application/json" || type.ends_with("+json");
 }
 
+/// The key of a request that its client may send again
+/// (draft-ietf-httpapi-idempotency-key-header): a quoted text; quotes may be left out. Empty: none.
+Result<std::string> idempotency_key(const Headers& headers) {
+  constexpr std::string_view kName = "Idempotency-Key";
+  constexpr std::size_t kLongest = 255;
+  if (!headers.has(kName)) return std::string{};
+  const auto header = headers.get(kName);
+  std::string_view key = header;
+  if (key.size() > 1 && key.starts_with('"') && key.ends_with('"'))
+    key = key.substr(1, key.size() - 2);
+  const bool plain = std::ranges::all_of(
+      key, [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; });
+  if (key.empty() || key.size() > kLongest || !plain)
+    return fail(ErrorCode::InvalidArgument,
+                fmt::format("Idempotency-Key is '{}', expected 1 to {} printable ASCII characters "
+                            "without quotes and backslashes, for instance a UUID",
+                            header, kLongest));
+  return std::string(key);
+}
+
 Response accepted(std::string_view base, const Job& job, const std::string& preference) {
   auto response = json_response(status_json(base, job), 201);
   response.headers.set("Location", job_url(base, job));
@@ -71,9 +91,15 @@ Response Api::execute(const Call& call) const {
   auto spec = decode_execute(*process, call.request.body);
   if (!spec)
     return problem_response(problem_kind(spec.error().code), spec.error().message, call.accept);
-  const auto job = jobs_.submit(*std::move(spec));
+  const auto key = idempotency_key(call.request.headers);
+  if (!key)
+    return problem_response(problem_kind(key.error().code), key.error().message, call.accept);
+  const auto job = jobs_.submit(*std::move(spec), *key);
   if (!job)
-    return problem_response(problem_kind(job.error().code), job.error().message, call.accept);
+    return problem_response(job.error().code == ErrorCode::AlreadyExists
+                                ? problems::kIdempotencyKeyUsed
+                                : problem_kind(job.error().code),
+                            job.error().message, call.accept);
 
   auto mode = mode_of(*process, call.request.headers.get("Prefer"), options_.sync_wait_s);
   if (mode.wait_s <= 0) return accepted(call.base, *job, mode.applied_to_job);
@@ -101,8 +127,9 @@ Response Api::execute(const Call& call) const {
     }
     return FollowStep{{}, std::make_shared<Response>(std::move(answer)), true};
   };
-  // Nobody else knows of the job.
-  follow.client_left = [this, id = job->id] { (void)jobs_.request_dismissal(id); };
+  // Without a key nobody can come back to the job.
+  if (key->empty())
+    follow.client_left = [this, id = job->id] { (void)jobs_.request_dismissal(id); };
   Response response;
   response.follow = std::move(follow);
   return response;

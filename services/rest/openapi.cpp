@@ -209,7 +209,12 @@ Json execution_path(const ProcessSpec& process) {
                            "not there after 10 seconds; without it the results.";
   auto post = operation(
       fmt::format("execute-{}", process.id), "Processes", fmt::format("Execute {}", process.id),
-      Json::array({parameter("Prefer", "header", prefer, text())}), std::move(answers));
+      Json::array({parameter("Prefer", "header", prefer, text()),
+                   parameter("Idempotency-Key", "header",
+                             "A text of the client's own, for instance a UUID: the same request "
+                             "with the same key again gets the same job.",
+                             text())}),
+      std::move(answers));
   post["requestBody"] = {
       {"required", true},
       {"content", content("application/json", schema_ref(execute_schema_name(process)))}};

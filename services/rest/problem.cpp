@@ -56,6 +56,7 @@ const ProblemKind kResultNotReady{404, OGC_EXCEPTION "result-not-ready", "Result
 const ProblemKind kResultNotAvailable{404, OGC_EXCEPTION "result-not-available",
                                       "Result not available"};
 const ProblemKind kJobIsFinal{409, kBlank, "The job has ended"};
+const ProblemKind kIdempotencyKeyUsed{422, kBlank, "Unprocessable Content"};
 const ProblemKind kInvalidQuery{400, OGC_EXCEPTION "invalid-query-parameter-value",
                                 "Invalid query parameter"};
 const ProblemKind kMethodNotAllowed{405, kBlank, "Method Not Allowed"};

@@ -30,6 +30,7 @@ extern const ProblemKind kNoSuchResource;
 extern const ProblemKind kResultNotReady;
 extern const ProblemKind kResultNotAvailable;
 extern const ProblemKind kJobIsFinal;
+extern const ProblemKind kIdempotencyKeyUsed;
 extern const ProblemKind kInvalidQuery;
 extern const ProblemKind kMethodNotAllowed;
 extern const ProblemKind kUnsupportedMediaType;

@@ -112,9 +112,13 @@ Result<void> EmbeddedStore::insert(const Job& job) {
   auto stored = guarded([&]() -> Result<void> {
     const std::scoped_lock lock(connections_->writer_mutex);
     auto& writer = connections_->writer;
+    Transaction transaction(writer, Durability::Full);
     if (find_job(writer, job.id))
       return fail(ErrorCode::AlreadyExists, fmt::format("job '{}' exists already", job.id));
-    Transaction transaction(writer, Durability::Full);
+    if (find_job_by_key(writer, job.idempotency_key))
+      return fail(
+          ErrorCode::AlreadyExists,
+          fmt::format("a job with idempotency key '{}' exists already", job.idempotency_key));
     insert_job(writer, job);
     transaction.commit();
     return {};
@@ -128,6 +132,17 @@ Result<Job> EmbeddedStore::get(const std::string& id) {
     const std::scoped_lock lock(connections_->reader_mutex);
     auto job = find_job(connections_->reader, id);
     if (!job) return no_such_job(id);
+    return *std::move(job);
+  });
+}
+
+Result<Job> EmbeddedStore::get_by_key(const std::string& idempotency_key) {
+  return guarded([&]() -> Result<Job> {
+    const std::scoped_lock lock(connections_->reader_mutex);
+    auto job = find_job_by_key(connections_->reader, idempotency_key);
+    if (!job)
+      return fail(ErrorCode::NotFound,
+                  fmt::format("no job has the idempotency key '{}'", idempotency_key));
     return *std::move(job);
   });
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -16,11 +17,10 @@ using sqlite::Query;
 using sqlite::Transaction;
 
 constexpr std::int64_t kApplicationId = 0x63'74'6d'73;  // "ctms", in the header of the file
-constexpr std::int64_t kSchemaVersion = 1;
 
 // A task is a job that nobody has finished. `worker` is the last holder and `lease_until` when it
 // must have been heard of; a free task has an empty worker, one whose worker died keeps its name.
-constexpr const char* kSchema = R"sql(
+constexpr const char* kVersion1 = R"sql(
   CREATE TABLE job (
     id TEXT PRIMARY KEY,
     process TEXT NOT NULL,
@@ -54,6 +54,15 @@ constexpr const char* kSchema = R"sql(
     deaths INTEGER NOT NULL DEFAULT 0
   ) STRICT;
 )sql";
+
+constexpr const char* kVersion2 = R"sql(
+  ALTER TABLE job ADD COLUMN idempotency_key TEXT NOT NULL DEFAULT '';
+  CREATE UNIQUE INDEX job_by_key ON job (idempotency_key) WHERE idempotency_key <> '';
+)sql";
+
+/// Each makes its version out of the one before.
+constexpr const char* kSchemas[] = {kVersion1, kVersion2};
+constexpr std::int64_t kSchemaVersion = std::size(kSchemas);
 
 std::string dump(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -103,17 +112,18 @@ void bind_job(Query& query, const Job& job) {
       .bind(17, job.updated)
       .bind(18, job.started)
       .bind(19, job.finished)
-      .bind(20, results_text(job.results));
+      .bind(20, results_text(job.results))
+      .bind(21, job.idempotency_key);
 }
 
 constexpr const char* kInsertJob =
     "INSERT INTO job (" CITYMESH_JOB_COLUMNS
     ") VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18,"
-    " ?19, ?20)";
+    " ?19, ?20, ?21)";
 constexpr const char* kUpdateJob =
     "UPDATE job SET (" CITYMESH_JOB_COLUMNS
     ") = (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19,"
-    " ?20) WHERE id = ?1";
+    " ?20, ?21) WHERE id = ?1";
 
 }  // namespace
 
@@ -145,12 +155,22 @@ Job read_job(const Query& row) {
   for (const auto& file : results)
     job.results.push_back(
         {file.at("output"), file.at("file_name"), file.at("media_type"), file.at("bytes")});
+  job.idempotency_key = row.text(20);
   return job;
 }
 
 std::optional<Job> find_job(Connection& connection, const std::string& id) {
   auto row = connection.query("SELECT " CITYMESH_JOB_COLUMNS " FROM job WHERE id = ?1");
   row.bind(1, id);
+  if (!row.step()) return std::nullopt;
+  return read_job(row);
+}
+
+std::optional<Job> find_job_by_key(Connection& connection, const std::string& key) {
+  if (key.empty()) return std::nullopt;
+  auto row = connection.query("SELECT " CITYMESH_JOB_COLUMNS
+                              " FROM job WHERE idempotency_key = ?1 AND idempotency_key <> ''");
+  row.bind(1, key);
   if (!row.step()) return std::nullopt;
   return read_job(row);
 }
@@ -168,7 +188,6 @@ void write_job(Connection& connection, Job& job) {
   query.run();
 }
 
-/// Creates the tables of a new database or says why an existing one is not ours.
 std::optional<Error> prepare_schema(Connection& connection, const std::filesystem::path& file) {
   const auto refuse = [&](ErrorCode code, const std::string& why) {
     return fail(code, fmt::format("job database '{}' {}", file.string(), why));
@@ -178,25 +197,26 @@ std::optional<Error> prepare_schema(Connection& connection, const std::filesyste
   const auto application = connection.value("PRAGMA application_id");
   const auto version = connection.value("PRAGMA user_version");
   const auto tables = connection.value("SELECT count(*) FROM sqlite_schema");
-  if (application == 0 && version == 0 && tables == 0) {
-    connection.run(kSchema);
-    connection.run(fmt::format("PRAGMA application_id = {}", kApplicationId).c_str());
-    connection.run(fmt::format("PRAGMA user_version = {}", kSchemaVersion).c_str());
-    transaction.commit();
-    return std::nullopt;
-  }
-  if (application != kApplicationId)
+  const bool is_new = application == 0 && version == 0 && tables == 0;
+  if (!is_new && (application != kApplicationId || version < 1))
     return refuse(ErrorCode::DataLoss, "is not a job database of citymesh");
   if (version > kSchemaVersion)
     return refuse(ErrorCode::FailedPrecondition,
                   fmt::format("has schema version {}, written by a newer citymesh; this one knows "
                               "versions up to {}",
                               version, kSchemaVersion));
-  auto findings = connection.query("PRAGMA quick_check(1)");
-  if (findings.step() && findings.text(0) != "ok")
-    return refuse(
-        ErrorCode::DataLoss,
-        fmt::format("is damaged ({}); move it away to start with an empty one", findings.text(0)));
+  {
+    auto findings = connection.query("PRAGMA quick_check(1)");
+    if (findings.step() && findings.text(0) != "ok")
+      return refuse(ErrorCode::DataLoss,
+                    fmt::format("is damaged ({}); move it away to start with an empty one",
+                                findings.text(0)));
+  }
+  if (version == kSchemaVersion) return std::nullopt;
+  for (auto next = version; next < kSchemaVersion; ++next) connection.run(kSchemas[next]);
+  connection.run(fmt::format("PRAGMA application_id = {}", kApplicationId).c_str());
+  connection.run(fmt::format("PRAGMA user_version = {}", kSchemaVersion).c_str());
+  transaction.commit();
   return std::nullopt;
 }
 

@@ -12,20 +12,22 @@
 #define CITYMESH_JOB_COLUMNS                                                                      \
   "id, process, inputs, outputs, response_document, state, message, stage, done, total, percent," \
   " error_code, error_message, attempt, dismiss_requested, created, updated, started, finished,"  \
-  " results"
+  " results, idempotency_key"
 #define CITYMESH_JOB_FILTER                                                     \
   " FROM job WHERE (?1 = '[]' OR process IN (SELECT value FROM json_each(?1)))" \
   " AND (?2 = '[]' OR state IN (SELECT value FROM json_each(?2)))"
 
 namespace citymesh {
 
-/// Creates the tables of a new database or says why an existing one is not ours.
+/// Creates the tables of a new database, brings those of an older version up to date, or says why
+/// an existing one is not ours.
 std::optional<Error> prepare_schema(sqlite::Connection& connection,
                                     const std::filesystem::path& file);
 
 /// Of a row that selects CITYMESH_JOB_COLUMNS.
 Job read_job(const sqlite::Query& row);
 std::optional<Job> find_job(sqlite::Connection& connection, const std::string& id);
+std::optional<Job> find_job_by_key(sqlite::Connection& connection, const std::string& key);
 void insert_job(sqlite::Connection& connection, const Job& job);
 /// Stores a changed job; `updated` grows by at least one, so that no watcher misses a change.
 void write_job(sqlite::Connection& connection, Job& job);

@@ -181,6 +181,70 @@ TEST_F(RestExecution, AClientThatLeavesTakesItsJobWithIt) {
   EXPECT_EQ(must(service_.jobs().get(only_job())).state, JobState::Dismissed);
 }
 
+TEST_F(RestExecution, ARepeatedRequestWithItsKeyGetsTheJobOfTheFirstOne) {
+  const Fields key = {{"Idempotency-Key", "\"3f1c2a\""}, {"Prefer", "respond-async"}};
+  const auto first = send("POST", kExecution, kBox, key);
+  ASSERT_EQ(first.status, 201);
+  const auto again = send("POST", kExecution, kBox, key);
+  EXPECT_EQ(again.status, 201);
+  EXPECT_EQ(again.headers.get("Location"), first.headers.get("Location"));
+
+  service_.succeed(service_.start(), JobService::export_files());
+  const auto late = send("POST", kExecution, kBox, {{"Idempotency-Key", "3f1c2a"}});
+  EXPECT_EQ(late.headers.get("Location"), first.headers.get("Location"));
+  EXPECT_EQ(document(late)["status"], "successful");
+  only_job();
+
+  send("POST", kExecution, kBox, {{"Idempotency-Key", "another"}});
+  send("POST", kExecution, kBox);
+  EXPECT_EQ(must(service_.jobs().count({})), 3U);
+}
+
+TEST_F(RestExecution, ARepeatedRequestMayWaitForTheResultsOfTheFirstOne) {
+  const Fields key = {{"Idempotency-Key", "3f1c2a"}};
+  const auto first = send("POST", kValidate, kBox, key);
+  ASSERT_TRUE(first.follow);
+  EXPECT_FALSE(first.follow->client_left);  // it may come back
+  const auto again = send("POST", kValidate, kBox, key);
+  ASSERT_TRUE(again.follow);
+  service_.succeed(service_.start(), JobService::export_files());
+  EXPECT_EQ(step(again)->status, 200);
+  only_job();
+}
+
+TEST_F(RestExecution, AKeyIsForOneRequestOnly) {
+  const Fields key = {{"Idempotency-Key", "3f1c2a"}, {"Prefer", "respond-async"}};
+  ASSERT_EQ(send("POST", kHeal, kBox, key).status, 201);
+  const auto id = only_job();
+  for (const auto& [target, body] :
+       {std::pair<std::string, std::string>{kValidate, kBox},
+        {kHeal, R"({"inputs":{"bbox":{"bbox":[13.4,52.5,13.42,52.51]}}})"},
+        {kHeal, R"({"inputs":{"bbox":{"bbox":[13.4,52.5,13.41,52.51]}},"outputs":{"report":{}}})"}})
+    EXPECT_THAT(detail(send("POST", target, body, key), 422), HasSubstr(id)) << body;
+  EXPECT_EQ(only_job(), id);
+}
+
+TEST_F(RestExecution, AKeyIsFreeAgainWhenItsJobIsForgotten) {
+  const Fields key = {{"Idempotency-Key", "3f1c2a"}, {"Prefer", "respond-async"}};
+  send("POST", kHeal, kBox, key);
+  const auto id = only_job();
+  service_.succeed(service_.start(), JobService::export_files());
+  service_.expire_results();
+  EXPECT_EQ(document(send("POST", kHeal, kBox, key))["jobID"], id);
+  service_.forget_jobs();
+  EXPECT_EQ(send("POST", kValidate, kBox, key).status, 201);
+  EXPECT_NE(only_job(), id);
+}
+
+TEST_F(RestExecution, AKeyThatCannotBeReadIsRefused) {
+  for (const auto& key : {std::string(), std::string("\"\""), std::string("a\"b"),
+                          std::string("a\\b"), std::string("\xc3\xa4"), std::string(256, 'k')})
+    EXPECT_THAT(detail(send("POST", kHeal, kBox, {{"Idempotency-Key", key}}), 400),
+                HasSubstr("Idempotency-Key"))
+        << key;
+  EXPECT_EQ(must(service_.jobs().count({})), 0U);
+}
+
 TEST_F(RestExecution, AServerThatNeverWaitsMakesAJobOfEveryExecution) {
   const Api never(service_.jobs(), service_.metrics(),
                   {.public_url = "http://c", .sync_wait_s = 0});

@@ -104,6 +104,8 @@ class JobService {
     must(sweep(*store_, *results_, {.keep_results_ms = 1}, now_ms() + 1'000));
   }
 
+  void forget_jobs() { must(sweep(*store_, *results_, {.keep_jobs_ms = 1}, now_ms() + 1'000)); }
+
   /// A successful job of every always-written file and an OBJ, submitted with `spec`.
   Job finished(JobSpec spec) {
     auto job = must(jobs_->submit(std::move(spec)));

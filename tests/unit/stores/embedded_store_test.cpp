@@ -346,6 +346,97 @@ TEST_F(EmbeddedStoreTest, ProgressIsForTheRunningAttemptOnly) {
   EXPECT_EQ(store_->get(job.id)->percent, 50);
 }
 
+/// As the first version wrote it: a job that is done and one that waits.
+constexpr const char* kVersion1 = R"sql(
+  PRAGMA application_id = 0x63746d73;
+  PRAGMA user_version = 1;
+  CREATE TABLE job (
+    id TEXT PRIMARY KEY,
+    process TEXT NOT NULL,
+    inputs TEXT NOT NULL,
+    outputs TEXT NOT NULL,
+    response_document INTEGER NOT NULL,
+    state TEXT NOT NULL,
+    message TEXT NOT NULL,
+    stage TEXT NOT NULL,
+    done INTEGER NOT NULL,
+    total INTEGER NOT NULL,
+    percent INTEGER NOT NULL,
+    error_code TEXT NOT NULL,
+    error_message TEXT NOT NULL,
+    attempt INTEGER NOT NULL,
+    dismiss_requested INTEGER NOT NULL,
+    created INTEGER NOT NULL,
+    updated INTEGER NOT NULL,
+    started INTEGER,
+    finished INTEGER,
+    results TEXT NOT NULL
+  ) STRICT;
+  CREATE INDEX job_by_time ON job (created DESC);
+  CREATE INDEX job_open ON job (state) WHERE state IN ('accepted', 'running');
+  CREATE TABLE task (
+    seq INTEGER PRIMARY KEY AUTOINCREMENT,
+    job_id TEXT NOT NULL UNIQUE REFERENCES job (id) ON DELETE CASCADE,
+    worker TEXT NOT NULL DEFAULT '',
+    attempt INTEGER NOT NULL DEFAULT 0,
+    lease_until INTEGER NOT NULL DEFAULT 0,
+    deaths INTEGER NOT NULL DEFAULT 0
+  ) STRICT;
+  INSERT INTO job VALUES
+    ('00000000-0000-4000-8000-000000000001', 'heal', '{}', '{"obj":"value"}', 0, 'successful',
+     '2 buildings', '', 2, 2, 100, '', '', 1, 0, 1000, 3000, 2000, 3000,
+     '[{"bytes":9,"file_name":"model.obj","media_type":"model/obj","output":"obj"}]'),
+    ('00000000-0000-4000-8000-000000000002', 'heal', '{}', '{}', 0, 'accepted', 'queued', '', 0, 0,
+     0, '', '', 0, 0, 4000, 4000, NULL, NULL, '[]');
+  INSERT INTO task (job_id) VALUES ('00000000-0000-4000-8000-000000000002');
+)sql";
+
+TEST_F(EmbeddedStoreTest, BringsADatabaseOfTheFirstVersionUpToDateWithItsJobs) {
+  store_.reset();
+  std::filesystem::remove_all(folder_ / "jobs.sqlite");
+  execute(kVersion1);
+  for (int time = 0; time < 2; ++time) {  // the second time there is nothing to do
+    store_ = reopened();
+    ASSERT_TRUE(store_);
+    const auto done = store_->get("00000000-0000-4000-8000-000000000001");
+    ASSERT_TRUE(done) << done.error().message;
+    EXPECT_EQ(done->state, JobState::Successful);
+    EXPECT_EQ(done->finished, 3000);
+    EXPECT_EQ(done->results.at(0).file_name, "model.obj");
+    EXPECT_EQ(done->idempotency_key, "");
+    EXPECT_EQ(*store_->count({}), 2u);
+  }
+  EXPECT_EQ(claimed().job_id, "00000000-0000-4000-8000-000000000002");
+  auto job = new_job();
+  job.idempotency_key = "key";
+  ASSERT_TRUE(store_->insert(job));
+  EXPECT_EQ(store_->get_by_key("key")->id, job.id);
+}
+
+TEST_F(EmbeddedStoreTest, AnIdempotencyKeyBelongsToOneJobUntilThatIsErased) {
+  auto first = new_job(), second = new_job();
+  first.idempotency_key = second.idempotency_key = "key";
+  ASSERT_TRUE(store_->insert(first));
+  store_ = reopened();
+  const auto refused = store_->insert(second);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::AlreadyExists);
+  EXPECT_FALSE(store_->get(second.id));
+  EXPECT_EQ(store_->get_by_key("key")->id, first.id);
+  ASSERT_TRUE(store_->update(first.id, {}, [](Job& job) { job.state = JobState::Failed; }));
+  EXPECT_EQ(store_->get_by_key("key")->id, first.id);
+
+  ASSERT_TRUE(store_->erase(first.id));
+  EXPECT_EQ(store_->get_by_key("key").error().code, ErrorCode::NotFound);
+  EXPECT_TRUE(store_->insert(second));
+}
+
+TEST_F(EmbeddedStoreTest, JobsWithoutAnIdempotencyKeyAreNeverTakenForEachOther) {
+  ASSERT_TRUE(store_->insert(new_job()));
+  ASSERT_TRUE(store_->insert(new_job()));
+  EXPECT_FALSE(store_->get_by_key(""));
+}
+
 TEST_F(EmbeddedStoreTest, RefusesADatabaseOfANewerVersion) {
   store_.reset();
   execute("PRAGMA user_version = 99");
