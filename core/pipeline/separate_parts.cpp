@@ -81,14 +81,14 @@ class Separation {
   /// Bodies that overlap give way together. One that gave way may reach, by a rounding, into one
   /// that only touched it: that one joins them and all give way anew.
   void run() {
-    constexpr int kRounds = 4;
+    constexpr int kRounds = 6;
     std::vector<char> changed(bodies_.size(), 1);
     for (int round = 0; round < kRounds; ++round) {
       find_overlaps(changed);
       UnionFind wanted = clusters_;
       std::vector<Pair> pairs;
       for (const Pair& pair : overlaps_)
-        if (!refused_.contains(pair) && clusters_.root(pair.first) != clusters_.root(pair.second)) {
+        if (!refused_.contains(pair)) {
           pairs.push_back(pair);
           wanted.join(pair.first, pair.second);
         }
@@ -97,6 +97,8 @@ class Separation {
       std::map<std::uint32_t, std::vector<Pair>> pairs_of;
       for (const Pair& pair : pairs) pairs_of[wanted.root(pair.first)].push_back(pair);
       for (const auto& [root, joining] : pairs_of) separate(joining, changed);
+      std::erase_if(refused_,
+                    [&](const Pair& pair) { return changed[pair.first] || changed[pair.second]; });
     }
     find_overlaps(changed);
   }
@@ -153,11 +155,15 @@ class Separation {
       if (!push_apart(pair, changed) && !push_apart({pair.second, pair.first}, changed))
         pairs.push_back(pair);
     if (pairs.empty()) return;
-    if (pairs.size() > 1 && separate_joined(pairs, changed)) return;
-    for (const Pair& pair : pairs)
-      if (clusters_.root(pair.first) != clusters_.root(pair.second) &&
-          !separate_joined({&pair, 1}, changed))
+    const bool all_joined = std::all_of(pairs.begin(), pairs.end(), [&](const Pair& pair) {
+      return clusters_.root(pair.first) == clusters_.root(pair.second);
+    });
+    if (pairs.size() > 1 && !all_joined && separate_joined(pairs, changed)) return;
+    for (const Pair& pair : pairs) {
+      const bool joined = clusters_.root(pair.first) == clusters_.root(pair.second);
+      if ((joined || !separate_joined({&pair, 1}, changed)) && !separate_alone(pair, changed))
         refused_.insert(pair);
+    }
   }
 
   const TriangleMesh& mesh_of(std::uint32_t body) const {
@@ -228,10 +234,23 @@ class Separation {
     return false;
   }
 
-  /// False: a limit was reached or a gate does not hold.
-  bool separate(const Cluster& cluster, double tolerance_m) {
+  /// The two as they are now, without those that they have given way to before.
+  bool separate_alone(const Pair& pair, std::vector<char>& changed) {
+    if (!separated_[pair.first] && !separated_[pair.second]) return false;  // that was tried
+    for (const double tolerance_m : kTolerances_m) {
+      if (tolerance_m > inputs_.max_displacement_m || context_.stopped()) break;
+      if (!separate({pair.first, pair.second}, tolerance_m, true)) continue;
+      changed[pair.first] = changed[pair.second] = 1;
+      return true;
+    }
+    return false;
+  }
+
+  /// Bodies as they came, or as they are `now`. False: a limit was reached or a gate does not hold.
+  bool separate(const Cluster& cluster, double tolerance_m, bool now = false) {
     std::vector<Shell> shells;
-    for (const std::uint32_t i : cluster) shells.push_back(shell_of(bodies_[i].mesh));
+    for (const std::uint32_t i : cluster)
+      shells.push_back(shell_of(now ? mesh_of(i) : bodies_[i].mesh));
     auto shared = share_space(shells, {tolerance_m}, context_);
     if (!shared) return false;
     std::vector<Separated> results;
@@ -243,7 +262,7 @@ class Separation {
     for (std::size_t k = 0; k < cluster.size(); ++k) {
       surfaces_[cluster[k]] = surface_of(results[k].mesh);
       separated_[cluster[k]] = std::move(results[k]);
-      spaces_[cluster[k]].clear();
+      if (!now) spaces_[cluster[k]].clear();
     }
     for (const SharedSpace& space : shared->spaces) {
       spaces_[cluster[space.from]].push_back(space);
