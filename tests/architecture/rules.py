@@ -24,7 +24,7 @@ OPEN_TASK = re.compile(r"\b(?:TODO|FIXME|XXX)\b(?!\(\w+\))")
 class Tree:
     """The text files of a working copy."""
 
-    FOLDERS = ("core", "services", "proto", "tests", "cmake", "scripts", "docs", "deploy", ".ci")
+    FOLDERS = ("core", "services", "proto", "tests", "cmake", "scripts", "clients", "docs", "deploy", ".ci")
     TEXT = SOURCES | {".txt", ".cmake", ".md", ".py", ".sh", ".proto", ".json", ".yml", ".html", ".js", ".css", ""}
 
     def __init__(self, root):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Runs the code blocks of the README and of the page about REST, as they stand, against a server of our own: only the two addresses and the place of the
-program are replaced.
+"""Runs the code blocks of the README, of the pages about REST and about clients, and of the Python client's README, as they stand,
+against a server of our own: only the two addresses and the place of the program are replaced.
 
     readme_test.py CITYMESH
 """
@@ -22,10 +22,10 @@ BLOCK = re.compile(r"```(sh|python)\n(.*?)```", re.DOTALL)
 READY_LIMIT_S = 60
 
 
-def python_with_grpc():
-    """Debian's Python has Debian's grpc; another one in front of it may not."""
+def python_with(modules):
+    """Debian's Python has Debian's packages; another one in front of it may not."""
     for python in (sys.executable, "/usr/bin/python3"):
-        if subprocess.run([python, "-c", "import grpc, google.protobuf"], capture_output=True).returncode == 0:
+        if subprocess.run([python, "-c", f"import {modules}"], capture_output=True).returncode == 0:
             return python
     return None
 
@@ -33,11 +33,12 @@ def python_with_grpc():
 class Readme(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        blocks = BLOCK.findall((ROOT / "README.md").read_text(encoding="utf-8"))
-        cls.rest_blocks = BLOCK.findall((ROOT / "docs" / "rest.md").read_text(encoding="utf-8"))
+        blocks, cls.rest_blocks, cls.client_blocks, cls.package_blocks = (
+            BLOCK.findall((ROOT / page).read_text(encoding="utf-8"))
+            for page in ("README.md", "docs/rest.md", "docs/clients.md", "clients/python/README.md"))
         cls.run_block, cls.curl_block, cls.python_block, cls.stubs_block, cls.grpc_block = blocks
         cls.folder = Path(tempfile.mkdtemp(prefix="citymesh-readme-"))
-        for name in ("tests", "proto"):
+        for name in ("tests", "proto", "clients"):
             (cls.folder / name).symlink_to(ROOT / name)
         cls.log = open(cls.folder / "server.log", "wb")
         cls.server = subprocess.Popen(
@@ -74,7 +75,7 @@ class Readme(unittest.TestCase):
         text = text.replace("build/release/services/apps/citymesh", str(PROGRAM))
         command = [python, "-B", "-c", text] if kind == "python" else ["bash", "-euc", text]
         done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL,
-                              env={**os.environ, "no_proxy": "*"})
+                              env={"PYTHONPATH": "clients/python", **os.environ, "no_proxy": "*"})
         self.assertEqual(done.returncode, 0, f"{text}\n{done.stdout}\n{done.stderr}")
         return done.stdout
 
@@ -97,7 +98,7 @@ class Readme(unittest.TestCase):
         self.assertIn("successful", self.run_example(self.python_block))
         self.assertEqual(mesh, (self.folder / "out/python/model.obj").read_bytes())
 
-        python = python_with_grpc()
+        python = python_with("grpc, google.protobuf")
         if python is None or shutil.which("grpc_python_plugin") is None:
             self.skipTest("gRPC for Python is not installed: python3-grpcio, protobuf-compiler-grpc")
         self.run_example(self.stubs_block)
@@ -119,6 +120,39 @@ class Readme(unittest.TestCase):
         lines = (self.folder / "out/rest/model.obj").read_text().splitlines()
         self.assertGreater(len(lines), 20)
         self.assertTrue(lines[0].startswith("#") and all(line[:2] in ("# ", "o ", "g ", "v ", "f ", "") for line in lines), lines[:3])
+
+    def test_page_about_clients(self):
+        curl, python, command, stubs, grpc, owslib = self.client_blocks
+        self.assertIn("event: status", self.run_example(curl))
+        self.counts("out/with-curl/report.json")
+        mesh = (self.folder / "out/with-curl/model.obj").read_bytes()
+
+        self.assertIn("delivered", self.run_example(python))
+        self.assertIn("out/with-command/model.obj", self.run_example(command))
+        for way in ("with-client", "with-command"):
+            self.assertEqual(mesh, (self.folder / "out" / way / "model.obj").read_bytes())
+
+        with self.subTest("gRPC"):
+            interpreter = python_with("grpc, google.protobuf")
+            if interpreter is None or shutil.which("grpc_python_plugin") is None:
+                self.skipTest("gRPC for Python is not installed: python3-grpcio, protobuf-compiler-grpc")
+            self.run_example(stubs)
+            self.assertIn("SUCCESSFUL", self.run_example(grpc, interpreter))
+            self.assertEqual(mesh, (self.folder / "out/with-grpc/model.obj").read_bytes())
+        with self.subTest("owslib"):
+            interpreter = python_with("owslib.ogcapi.processes")
+            if interpreter is None:
+                self.skipTest("owslib is not installed: python3-owslib")
+            self.assertIn("requested", self.run_example(owslib, interpreter))
+
+    def test_readme_of_the_python_client(self):
+        export, steps, command = self.package_blocks
+        self.assertIn("report.json", self.run_example(export))
+        self.assertIn("successful", self.run_example(steps))
+        self.assertEqual(json.loads((self.folder / "healed.city.json").read_text(encoding="utf-8"))["type"], "CityJSON")
+        self.assertIn("out/mitte-command/model.obj", self.run_example(command))
+        self.assertEqual((self.folder / "out/mitte-python/model.obj").read_bytes(),
+                         (self.folder / "out/mitte-command/model.obj").read_bytes())
 
 
 if __name__ == "__main__":
