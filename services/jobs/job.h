@@ -66,14 +66,16 @@ struct Job {
   TimeMs updated = 0;  ///< grows with every change of the job
   std::optional<TimeMs> started{}, finished{};
   std::vector<ResultFile> results{};  ///< when successful
-  /// By which its client knows the request again when it repeats it; empty: never. No two jobs have
-  /// the same.
+  /// By which its client knows the request again when it repeats it; empty: never. No two jobs of
+  /// one owner have the same.
   std::string idempotency_key{};
+  std::string owner{};  ///< the client it belongs to; empty: nobody in particular
 };
 
 struct JobFilter {
   std::vector<std::string> processes{};
   std::vector<JobState> states{};
+  std::optional<std::string> owner{};  ///< nothing: of all
   std::uint32_t limit = 100;
   std::uint32_t offset = 0;
 };

@@ -73,7 +73,7 @@ JobManager::JobManager(JobStore& jobs, TaskQueue& queue, ResultStore& results,
   });
 }
 
-Result<Job> JobManager::submit(JobSpec spec, std::string idempotency_key) {
+Result<Job> JobManager::submit(JobSpec spec, std::string idempotency_key, std::string owner) {
   const auto* process = find_process(spec.process);
   if (process == nullptr)
     return fail(ErrorCode::NotFound, fmt::format("process '{}' does not exist; available: {}",
@@ -91,6 +91,7 @@ Result<Job> JobManager::submit(JobSpec spec, std::string idempotency_key) {
   job.message = "queued";
   job.created = job.updated = now_ms();
   job.idempotency_key = std::move(idempotency_key);
+  job.owner = std::move(owner);
 
   {
     const std::scoped_lock lock(submit_mutex_);
@@ -98,12 +99,7 @@ Result<Job> JobManager::submit(JobSpec spec, std::string idempotency_key) {
       auto first = repeated(job);
       if (first || first.error().code != ErrorCode::NotFound) return first;
     }
-    const auto open = jobs_.count_open();
-    if (!open) return open.error();
-    if (*open >= options_.max_open_jobs)
-      return fail(ErrorCode::ResourceExhausted,
-                  fmt::format("{} jobs are open and at most {} may be; try again later", *open,
-                              options_.max_open_jobs));
+    if (const auto room = check_room_for(job); !room) return room.error();
     if (auto stored = jobs_.insert(job); !stored) {
       // Another process has just taken the same key.
       if (stored.error().code == ErrorCode::AlreadyExists) return repeated(job);
@@ -117,9 +113,27 @@ Result<Job> JobManager::submit(JobSpec spec, std::string idempotency_key) {
   return job;
 }
 
+Result<void> JobManager::check_room_for(const Job& job) {
+  const auto open = jobs_.count_open();
+  if (!open) return open.error();
+  if (*open >= options_.max_open_jobs)
+    return fail(ErrorCode::ResourceExhausted,
+                fmt::format("{} jobs are open and at most {} may be; try again later", *open,
+                            options_.max_open_jobs));
+  if (options_.max_open_jobs_per_owner == 0 || job.owner.empty()) return {};
+  const auto own = jobs_.count_open_of(job.owner);
+  if (!own) return own.error();
+  if (*own >= options_.max_open_jobs_per_owner)
+    return fail(ErrorCode::ResourceExhausted,
+                fmt::format("{} of your jobs are open and at most {} may be; try again when one "
+                            "of them has ended",
+                            *own, options_.max_open_jobs_per_owner));
+  return {};
+}
+
 /// The job that a request with the key of `job` got before.
 Result<Job> JobManager::repeated(const Job& job) {
-  auto first = jobs_.get_by_key(job.idempotency_key);
+  auto first = jobs_.get_by_key(job.owner, job.idempotency_key);
   if (first && first->spec != job.spec)
     return fail(ErrorCode::AlreadyExists,
                 fmt::format("idempotency key '{}' belongs to job {}, which asked for something "

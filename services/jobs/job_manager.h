@@ -17,6 +17,8 @@ namespace citymesh {
 struct JobManagerOptions {
   /// Accepted and running; more are refused with ResourceExhausted.
   std::uint32_t max_open_jobs = 1000;
+  /// The same for each owner; jobs of nobody in particular do not count. 0: no limit of its own.
+  std::uint32_t max_open_jobs_per_owner = 0;
   /// How long `dismiss` waits for a running job to stop before it answers.
   TimeMs dismiss_wait_ms = 1000;
   /// How often a waiting call looks for changes that another process made.
@@ -34,10 +36,10 @@ class JobManager {
   /// for an unknown process, InvalidArgument for inputs or outputs, ResourceExhausted.
   /// Requested outputs that are formats are added to the input `formats`, or are the formats where
   /// the request states none.
-  /// With an idempotency key a repeated request gets the job of the first one, also when that has
-  /// ended. AlreadyExists when the first one asked for something else. The key is free again once
-  /// the job is forgotten.
-  Result<Job> submit(JobSpec spec, std::string idempotency_key = {});
+  /// With an idempotency key a repeated request of the same owner gets the job of the first one,
+  /// also when that has ended. AlreadyExists when the first one asked for something else. The key
+  /// is free again once the job is forgotten.
+  Result<Job> submit(JobSpec spec, std::string idempotency_key = {}, std::string owner = {});
   Result<Job> get(const std::string& id);
   Result<std::vector<Job>> list(const JobFilter& filter);
   Result<std::uint64_t> count(const JobFilter& filter);
@@ -71,6 +73,7 @@ class JobManager {
   Result<Job> wait_until(const std::string& id, TimeMs wait_ms,
                          const std::function<bool(const Job&)>& enough);
   Result<Job> repeated(const Job& job);
+  Result<void> check_room_for(const Job& job);
 
   JobStore& jobs_;
   TaskQueue& queue_;

@@ -21,15 +21,18 @@ class JobStore {
  public:
   virtual ~JobStore() = default;
 
-  /// AlreadyExists when there is a job with its id or its idempotency key.
+  /// AlreadyExists when there is a job with its id, or with its owner and idempotency key.
   virtual Result<void> insert(const Job& job) = 0;
-  virtual Result<Job> get(const std::string& id) = 0;                      ///< NotFound
-  virtual Result<Job> get_by_key(const std::string& idempotency_key) = 0;  ///< NotFound
+  virtual Result<Job> get(const std::string& id) = 0;  ///< NotFound
+  virtual Result<Job> get_by_key(const std::string& owner,
+                                 const std::string& idempotency_key) = 0;  ///< NotFound
   virtual Result<std::vector<Job>> list(const JobFilter& filter) = 0;      ///< newest first
   /// How many jobs match; limit and offset of the filter do not count.
   virtual Result<std::uint64_t> count(const JobFilter& filter) = 0;
 
-  virtual Result<std::uint64_t> count_open() = 0;  ///< accepted and running; cheap
+  // Accepted and running; cheap.
+  virtual Result<std::uint64_t> count_open() = 0;
+  virtual Result<std::uint64_t> count_open_of(const std::string& owner) = 0;
 
   /// Applies `change` to the stored job and stores it, unless the job is final already or `attempt`
   /// (when given) is no longer the job's attempt: then FailedPrecondition. A late worker can so

@@ -34,10 +34,11 @@ class EmbeddedStore final : public JobStore, public TaskQueue {
 
   Result<void> insert(const Job& job) override;
   Result<Job> get(const std::string& id) override;
-  Result<Job> get_by_key(const std::string& idempotency_key) override;
+  Result<Job> get_by_key(const std::string& owner, const std::string& idempotency_key) override;
   Result<std::vector<Job>> list(const JobFilter& filter) override;
   Result<std::uint64_t> count(const JobFilter& filter) override;
   Result<std::uint64_t> count_open() override;
+  Result<std::uint64_t> count_open_of(const std::string& owner) override;
   Result<Job> update(const std::string& id, std::optional<std::uint32_t> attempt,
                      const std::function<void(Job&)>& change) override;
   Result<void> set_progress(const std::string& id, std::uint32_t attempt,

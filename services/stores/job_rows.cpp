@@ -60,8 +60,17 @@ constexpr const char* kVersion2 = R"sql(
   CREATE UNIQUE INDEX job_by_key ON job (idempotency_key) WHERE idempotency_key <> '';
 )sql";
 
+// The key of one client says nothing about that of another.
+constexpr const char* kVersion3 = R"sql(
+  ALTER TABLE job ADD COLUMN owner TEXT NOT NULL DEFAULT '';
+  DROP INDEX job_by_key;
+  CREATE UNIQUE INDEX job_by_key ON job (owner, idempotency_key) WHERE idempotency_key <> '';
+  CREATE INDEX job_by_owner ON job (owner, created DESC);
+  CREATE INDEX job_open_by_owner ON job (owner) WHERE state IN ('accepted', 'running');
+)sql";
+
 /// Each makes its version out of the one before.
-constexpr const char* kSchemas[] = {kVersion1, kVersion2};
+constexpr const char* kSchemas[] = {kVersion1, kVersion2, kVersion3};
 constexpr std::int64_t kSchemaVersion = std::size(kSchemas);
 
 std::string dump(const json& value) {
@@ -113,17 +122,18 @@ void bind_job(Query& query, const Job& job) {
       .bind(18, job.started)
       .bind(19, job.finished)
       .bind(20, results_text(job.results))
-      .bind(21, job.idempotency_key);
+      .bind(21, job.idempotency_key)
+      .bind(22, job.owner);
 }
 
 constexpr const char* kInsertJob =
     "INSERT INTO job (" CITYMESH_JOB_COLUMNS
     ") VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18,"
-    " ?19, ?20, ?21)";
+    " ?19, ?20, ?21, ?22)";
 constexpr const char* kUpdateJob =
     "UPDATE job SET (" CITYMESH_JOB_COLUMNS
     ") = (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19,"
-    " ?20, ?21) WHERE id = ?1";
+    " ?20, ?21, ?22) WHERE id = ?1";
 
 }  // namespace
 
@@ -156,6 +166,7 @@ Job read_job(const Query& row) {
     job.results.push_back(
         {file.at("output"), file.at("file_name"), file.at("media_type"), file.at("bytes")});
   job.idempotency_key = row.text(20);
+  job.owner = row.text(21);
   return job;
 }
 
@@ -166,11 +177,13 @@ std::optional<Job> find_job(Connection& connection, const std::string& id) {
   return read_job(row);
 }
 
-std::optional<Job> find_job_by_key(Connection& connection, const std::string& key) {
+std::optional<Job> find_job_by_key(Connection& connection, const std::string& owner,
+                                   const std::string& key) {
   if (key.empty()) return std::nullopt;
   auto row = connection.query("SELECT " CITYMESH_JOB_COLUMNS
-                              " FROM job WHERE idempotency_key = ?1 AND idempotency_key <> ''");
-  row.bind(1, key);
+                              " FROM job WHERE owner = ?1 AND idempotency_key = ?2"
+                              " AND idempotency_key <> ''");
+  row.bind(1, owner).bind(2, key);
   if (!row.step()) return std::nullopt;
   return read_job(row);
 }

@@ -12,7 +12,7 @@
 #define CITYMESH_JOB_COLUMNS                                                                      \
   "id, process, inputs, outputs, response_document, state, message, stage, done, total, percent," \
   " error_code, error_message, attempt, dismiss_requested, created, updated, started, finished,"  \
-  " results, idempotency_key"
+  " results, idempotency_key, owner"
 #define CITYMESH_JOB_FILTER                                                     \
   " FROM job WHERE (?1 = '[]' OR process IN (SELECT value FROM json_each(?1)))" \
   " AND (?2 = '[]' OR state IN (SELECT value FROM json_each(?2)))"
@@ -27,7 +27,8 @@ std::optional<Error> prepare_schema(sqlite::Connection& connection,
 /// Of a row that selects CITYMESH_JOB_COLUMNS.
 Job read_job(const sqlite::Query& row);
 std::optional<Job> find_job(sqlite::Connection& connection, const std::string& id);
-std::optional<Job> find_job_by_key(sqlite::Connection& connection, const std::string& key);
+std::optional<Job> find_job_by_key(sqlite::Connection& connection, const std::string& owner,
+                                   const std::string& key);
 void insert_job(sqlite::Connection& connection, const Job& job);
 /// Stores a changed job; `updated` grows by at least one, so that no watcher misses a change.
 void write_job(sqlite::Connection& connection, Job& job);

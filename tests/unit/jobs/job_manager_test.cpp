@@ -124,6 +124,29 @@ TEST_F(JobManagerTest, RefusesMoreOpenJobsThanTheLimit) {
   submitted();
 }
 
+TEST_F(JobManagerTest, AnOwnerHasRoomOfItsOwnAndNobodysJobsTakeNone) {
+  JobManager jobs(*store_, *store_, *results_, {.max_open_jobs = 10, .max_open_jobs_per_owner = 2});
+  const JobSpec spec{.process = "export-for-simulation"};
+  for (int i = 0; i < 2; ++i) ASSERT_TRUE(jobs.submit(spec, {}, "city"));
+  const auto refused = jobs.submit(spec, {}, "city");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::ResourceExhausted);
+  EXPECT_THAT(refused.error().message, HasSubstr("2 of your jobs"));
+  EXPECT_TRUE(jobs.submit(spec, {}, "port"));
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(jobs.submit(spec));
+  finished(started(), JobState::Failed);
+  EXPECT_TRUE(jobs.submit(spec, {}, "city"));
+}
+
+TEST_F(JobManagerTest, TheKeyOfARepeatedRequestCountsForItsOwnerOnly) {
+  const JobSpec spec{.process = "export-for-simulation"};
+  const auto first = jobs_.submit(spec, "key", "city");
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->owner, "city");
+  EXPECT_EQ(jobs_.submit(spec, "key", "city")->id, first->id);
+  EXPECT_NE(jobs_.submit(spec, "key", "port")->id, first->id);
+}
+
 TEST_F(JobManagerTest, AQueuedJobIsDismissedAtOnceAndNeverRuns) {
   const auto job = submitted();
   const auto dismissed = jobs_.dismiss(job.id);

@@ -75,6 +75,7 @@ TEST_F(EmbeddedStoreTest, KeepsEveryFieldOfAJobOverAReopening) {
   job.dismiss_requested = true;
   job.started = job.created + 1;
   job.finished = job.created + 2;
+  job.owner = "key:city";
   job.results = {{"obj", "model.obj", "model/obj", 1234}};
   ASSERT_TRUE(store_->insert(job));
 
@@ -96,6 +97,7 @@ TEST_F(EmbeddedStoreTest, KeepsEveryFieldOfAJobOverAReopening) {
   EXPECT_EQ(read->created, job.created);
   EXPECT_EQ(read->started, job.started);
   EXPECT_EQ(read->finished, job.finished);
+  EXPECT_EQ(read->owner, "key:city");
   ASSERT_EQ(read->results.size(), 1u);
   EXPECT_EQ(read->results[0].file_name, "model.obj");
   EXPECT_EQ(read->results[0].bytes, 1234u);
@@ -142,6 +144,30 @@ TEST_F(EmbeddedStoreTest, ListsNewestFirstByProcessStateAndPage) {
   EXPECT_EQ(*store_->count_open(), 4u);
   ASSERT_TRUE(store_->update(other.id, {}, [](Job& job) { job.state = JobState::Failed; }));
   EXPECT_EQ(*store_->count_open(), 3u);
+}
+
+TEST_F(EmbeddedStoreTest, ListsAndCountsTheJobsOfOneOwner) {
+  std::vector<Job> of_city;
+  for (const auto* owner : {"city", "port", "city", "", "city"}) {
+    auto job = new_job();
+    job.owner = owner;
+    ASSERT_TRUE(store_->insert(job));
+    if (job.owner == "city") of_city.push_back(job);
+  }
+  const auto all = store_->list({.owner = "city"});
+  ASSERT_TRUE(all);
+  ASSERT_EQ(all->size(), 3u);
+  EXPECT_EQ(all->front().id, of_city.back().id);
+  EXPECT_EQ(store_->list({.owner = "city", .limit = 1, .offset = 2})->at(0).id, of_city[0].id);
+  EXPECT_EQ(*store_->count({.owner = "city"}), 3u);
+  EXPECT_EQ(*store_->count({.processes = {"validate"}, .owner = "city"}), 0u);
+  EXPECT_EQ(*store_->count({.owner = "nobody"}), 0u);
+  EXPECT_EQ(*store_->count({}), 5u);
+
+  EXPECT_EQ(*store_->count_open_of("city"), 3u);
+  ASSERT_TRUE(store_->update(of_city[1].id, {}, [](Job& job) { job.state = JobState::Failed; }));
+  EXPECT_EQ(*store_->count_open_of("city"), 2u);
+  EXPECT_EQ(*store_->count_open_of("nobody"), 0u);
 }
 
 TEST_F(EmbeddedStoreTest, ErasesAJobWithItsTask) {
@@ -410,7 +436,33 @@ TEST_F(EmbeddedStoreTest, BringsADatabaseOfTheFirstVersionUpToDateWithItsJobs) {
   auto job = new_job();
   job.idempotency_key = "key";
   ASSERT_TRUE(store_->insert(job));
-  EXPECT_EQ(store_->get_by_key("key")->id, job.id);
+  EXPECT_EQ(store_->get_by_key("", "key")->id, job.id);
+}
+
+/// What the second version added to the first.
+constexpr const char* kVersion2 = R"sql(
+  ALTER TABLE job ADD COLUMN idempotency_key TEXT NOT NULL DEFAULT '';
+  CREATE UNIQUE INDEX job_by_key ON job (idempotency_key) WHERE idempotency_key <> '';
+  UPDATE job SET idempotency_key = 'old key' WHERE state = 'accepted';
+  PRAGMA user_version = 2;
+)sql";
+
+TEST_F(EmbeddedStoreTest, JobsOfTheSecondVersionBelongToNobodyAndKeepTheirKeys) {
+  store_.reset();
+  std::filesystem::remove_all(folder_ / "jobs.sqlite");
+  execute(kVersion1);
+  execute(kVersion2);
+  for (int time = 0; time < 2; ++time) {
+    store_ = reopened();
+    ASSERT_TRUE(store_);
+    EXPECT_EQ(*store_->count({.owner = ""}), 2u);
+    EXPECT_EQ(store_->get_by_key("", "old key")->id, "00000000-0000-4000-8000-000000000002");
+  }
+  auto job = new_job();
+  job.idempotency_key = "old key";
+  EXPECT_EQ(store_->insert(job).error().code, ErrorCode::AlreadyExists);
+  job.owner = "city";
+  EXPECT_TRUE(store_->insert(job));
 }
 
 TEST_F(EmbeddedStoreTest, AnIdempotencyKeyBelongsToOneJobUntilThatIsErased) {
@@ -422,19 +474,31 @@ TEST_F(EmbeddedStoreTest, AnIdempotencyKeyBelongsToOneJobUntilThatIsErased) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::AlreadyExists);
   EXPECT_FALSE(store_->get(second.id));
-  EXPECT_EQ(store_->get_by_key("key")->id, first.id);
+  EXPECT_EQ(store_->get_by_key("", "key")->id, first.id);
   ASSERT_TRUE(store_->update(first.id, {}, [](Job& job) { job.state = JobState::Failed; }));
-  EXPECT_EQ(store_->get_by_key("key")->id, first.id);
+  EXPECT_EQ(store_->get_by_key("", "key")->id, first.id);
 
   ASSERT_TRUE(store_->erase(first.id));
-  EXPECT_EQ(store_->get_by_key("key").error().code, ErrorCode::NotFound);
+  EXPECT_EQ(store_->get_by_key("", "key").error().code, ErrorCode::NotFound);
   EXPECT_TRUE(store_->insert(second));
+}
+
+TEST_F(EmbeddedStoreTest, TheIdempotencyKeyOfOneOwnerIsFreeForAnother) {
+  auto first = new_job(), second = new_job();
+  first.idempotency_key = second.idempotency_key = "key";
+  first.owner = "city";
+  second.owner = "port";
+  ASSERT_TRUE(store_->insert(first));
+  ASSERT_TRUE(store_->insert(second));
+  EXPECT_EQ(store_->get_by_key("city", "key")->id, first.id);
+  EXPECT_EQ(store_->get_by_key("port", "key")->id, second.id);
+  EXPECT_FALSE(store_->get_by_key("", "key"));
 }
 
 TEST_F(EmbeddedStoreTest, JobsWithoutAnIdempotencyKeyAreNeverTakenForEachOther) {
   ASSERT_TRUE(store_->insert(new_job()));
   ASSERT_TRUE(store_->insert(new_job()));
-  EXPECT_FALSE(store_->get_by_key(""));
+  EXPECT_FALSE(store_->get_by_key("", ""));
 }
 
 TEST_F(EmbeddedStoreTest, RefusesADatabaseOfANewerVersion) {

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "core/base/result.h"
+#include "services/access/client.h"
+#include "services/access/networks.h"
+#include "services/access/tokens.h"
+
+namespace citymesh {
+
+struct AccessOptions {
+  std::filesystem::path api_keys{};        ///< file of ApiKeys::parse; empty: none are accepted
+  std::filesystem::path oidc_jwks_file{};  ///< file of parse_jwks; empty: no tokens are accepted
+  TokenRules token_rules{};
+  std::string trusted_proxies{};  ///< Networks whose forwarded headers are believed; empty: none
+};
+
+/// What a request says about who sent it.
+struct Credentials {
+  std::string authorization{};  ///< the header: `Bearer` and a token or an API key
+  std::string api_key{};        ///< the header X-API-Key; it counts before the other
+  std::string address{};        ///< of the client; names it where nobody has to show who he is
+};
+
+/// Knows the clients of the service. Thread-safe.
+class Access {
+ public:
+  /// Without any file everybody may do everything. Errors: those of the files, with their names.
+  static Result<std::unique_ptr<Access>> open(AccessOptions options);
+  ~Access();
+  Access(const Access&) = delete;
+  Access& operator=(const Access&) = delete;
+
+  bool is_required() const;  ///< whether clients have to show who they are
+
+  /// The client of a request. One that shows nothing has no role, or where nobody has to, every
+  /// one. Every error means that what it shows proves nothing.
+  Result<Client> identify(const Credentials& credentials) const;
+
+  const Networks& trusted_proxies() const { return trusted_proxies_; }
+
+  /// Reads the files again if they have changed; true if so. After an error those read before stay
+  /// in force.
+  Result<bool> reload();
+
+ private:
+  struct Known;
+  explicit Access(AccessOptions options);
+  std::shared_ptr<const Known> known() const;
+
+  const AccessOptions options_;
+  Networks trusted_proxies_;
+  mutable std::mutex mutex_;
+  std::shared_ptr<const Known> known_;
+};
+
+}  // namespace citymesh
