@@ -25,14 +25,6 @@ std::int64_t floored(std::int64_t value, std::int64_t parts) {
   return value >= 0 ? value / parts : -((-value + parts - 1) / parts);
 }
 
-std::vector<GridBox> boxes_around(std::span<const GridPoint> points,
-                                  std::span<const Triangle> triangles) {
-  std::vector<GridBox> boxes;
-  boxes.reserve(triangles.size());
-  for (const Triangle& t : triangles) boxes.push_back(box_of(points, t));
-  return boxes;
-}
-
 bool contains(const GridPoint2 (&t)[3], const GridPoint2& o) {
   const int u = orient2d(t[0], t[1], o), v = orient2d(t[1], t[2], o), w = orient2d(t[2], t[0], o);
   return (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
@@ -59,7 +51,7 @@ Side locate(std::span<const GridPoint2> ring, const GridPoint2& place, std::int6
 }
 
 Locator::Locator(std::span<const GridPoint> points, std::span<const Triangle> triangles)
-    : points_(points), triangles_(triangles), tree_(boxes_around(points, triangles)) {
+    : points_(points), triangles_(triangles), tree_(boxes_of(points, triangles)) {
   if (triangles.empty()) return;
   box_ = box_of(points, triangles[0]);
   for (const Triangle& t : triangles) box_.add(box_of(points, t));

@@ -16,14 +16,6 @@ Point3 difference(const GridPoint& a, const GridPoint& b) {
 double dot(const Point3& a, const Point3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 double length(const Point3& a) { return std::sqrt(dot(a, a)); }
 
-std::vector<GridBox> boxes_of(std::span<const GridPoint> points,
-                              std::span<const Triangle> triangles) {
-  std::vector<GridBox> boxes;
-  boxes.reserve(triangles.size());
-  for (const Triangle& t : triangles) boxes.push_back(box_of(points, t));
-  return boxes;
-}
-
 /// Many copies of one triangle would all be nearest.
 std::vector<Triangle> each_once(std::span<const Triangle> triangles) {
   std::vector<Triangle> sorted(triangles.begin(), triangles.end());
@@ -103,6 +95,14 @@ GridBox box_of(std::span<const GridPoint> points, const Triangle& triangle) {
   box.add(points[triangle[1]]);
   box.add(points[triangle[2]]);
   return box;
+}
+
+std::vector<GridBox> boxes_of(std::span<const GridPoint> points,
+                              std::span<const Triangle> triangles) {
+  std::vector<GridBox> boxes;
+  boxes.reserve(triangles.size());
+  for (const Triangle& t : triangles) boxes.push_back(box_of(points, t));
+  return boxes;
 }
 
 DistanceField::DistanceField(std::span<const GridPoint> points, std::span<const Triangle> triangles)

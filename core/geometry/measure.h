@@ -25,6 +25,8 @@ double distance_to_triangle_m(const GridPoint& p, const GridPoint& a, const Grid
                               const GridPoint& c);
 
 GridBox box_of(std::span<const GridPoint> points, const Triangle& triangle);
+std::vector<GridBox> boxes_of(std::span<const GridPoint> points,
+                              std::span<const Triangle> triangles);
 
 /// Nearest distances from places to a fixed set of triangles.
 class DistanceField {

@@ -69,12 +69,11 @@ std::vector<std::vector<Triangle>> plane_pieces(std::span<const GridPoint> point
 
 }  // namespace
 
-std::vector<GridPoint> split_uneven_faces(Shell& shell, double planarity_tolerance_m,
-                                          bool into_triangles) {
+std::vector<GridPoint> split_uneven_faces(Shell& shell, const std::vector<bool>& sound,
+                                          double planarity_tolerance_m, bool into_triangles) {
   std::vector<GridPoint> places;
-  const std::vector<bool> sound = sound_faces(shell, {0, planarity_tolerance_m});
-  if (std::find(sound.begin(), sound.end(), false) == sound.end()) return places;
   std::vector<Face> faces;
+  faces.reserve(shell.faces.size());
   for (std::size_t f = 0; f < sound.size(); ++f) {
     Face& face = shell.faces[f];
     const auto triangles = triangulate(shell.points, face.rings);

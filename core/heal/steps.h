@@ -63,10 +63,11 @@ void close_holes(Shell& shell, StepContext& context);
 void drop_double_triangles(Shell& shell, StepContext& context);
 
 /// Cuts faces that readers may find not plane, or crossing themselves where they look along another
-/// direction than citymesh, into plane pieces or into triangles. They keep type and source. Returns
-/// the first corner of each face that it cut.
-std::vector<GridPoint> split_uneven_faces(Shell& shell, double planarity_tolerance_m,
-                                          bool into_triangles);
+/// direction than citymesh, into plane pieces or into triangles. They keep type and source.
+/// `sound`: sound_faces() of the shell, those stay. Returns the first corner of each face that it
+/// cut.
+std::vector<GridPoint> split_uneven_faces(Shell& shell, const std::vector<bool>& sound,
+                                          double planarity_tolerance_m, bool into_triangles);
 
 /// Where the shell has several exteriors puts the faces of each together, those of its cavities
 /// behind them: what solids are written of.

@@ -132,9 +132,7 @@ bool is_crossing(const Shell& shell) {
     if (!pieces) return true;
     triangles.insert(triangles.end(), pieces->begin(), pieces->end());
   }
-  std::vector<GridBox> boxes;
-  boxes.reserve(triangles.size());
-  for (const Triangle& t : triangles) boxes.push_back(box_of(shell.points, t));
+  const std::vector<GridBox> boxes = boxes_of(shell.points, triangles);
   const BoxTree tree(boxes);
   const auto corners = [&](std::uint32_t f) {
     const Triangle& t = triangles[f];

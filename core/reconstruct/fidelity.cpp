@@ -44,7 +44,7 @@ GridPoint middle(const GridPoint& a, const GridPoint& b, const GridPoint& c) {
 class Inside {
  public:
   Inside(std::span<const GridPoint> points, std::span<const Triangle> triangles)
-      : points_(points), triangles_(triangles), tree_(boxes(points, triangles)) {}
+      : points_(points), triangles_(triangles), tree_(boxes_of(points, triangles)) {}
 
   bool operator()(const GridPoint& p) const {
     GridBox up = GridBox::of(p);
@@ -72,12 +72,6 @@ class Inside {
   }
 
  private:
-  static std::vector<GridBox> boxes(std::span<const GridPoint> points,
-                                    std::span<const Triangle> triangles) {
-    std::vector<GridBox> all;
-    for (const Triangle& t : triangles) all.push_back(box_of(points, t));
-    return all;
-  }
   std::span<const GridPoint> points_;
   std::span<const Triangle> triangles_;
   BoxTree tree_;

@@ -40,7 +40,7 @@ class Other {
       : surface_(surface),
         reach_m_(reach_m),
         locator_(surface.points, surface.triangles),
-        tree_(boxes_of(surface)) {}
+        tree_(boxes_of(surface.points, surface.triangles)) {}
 
   /// Places along the way from a to b, one between any two crossings of faces, that lie inside.
   std::vector<Place> inside_along(const GridPoint& a, const GridPoint& b) const {
@@ -64,13 +64,6 @@ class Other {
   }
 
  private:
-  static std::vector<GridBox> boxes_of(const TriangleView& surface) {
-    std::vector<GridBox> boxes;
-    boxes.reserve(surface.triangles.size());
-    for (const Triangle& t : surface.triangles) boxes.push_back(box_of(surface.points, t));
-    return boxes;
-  }
-
   Place place_at(const Point3& at) const {
     Place place{at};
     const GridPoint near = rounded(at);

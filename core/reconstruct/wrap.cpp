@@ -278,8 +278,7 @@ bool is_flat(std::span<const GridPoint> points, const Triangle& t) {
 std::vector<std::vector<std::uint32_t>> spoiled(std::span<const GridPoint> points,
                                                 std::span<const Triangle> triangles) {
   std::vector<std::vector<std::uint32_t>> groups;
-  std::vector<GridBox> boxes;
-  for (const Triangle& t : triangles) boxes.push_back(box_of(points, t));
+  const std::vector<GridBox> boxes = boxes_of(points, triangles);
   const BoxTree tree(boxes);
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {
     const Triangle& s = triangles[i];

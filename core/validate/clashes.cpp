@@ -59,9 +59,7 @@ std::vector<Clash> find_clashes(const Boundary& boundary) {
     return std::array<GridPoint, 3>{boundary.points[t[0]], boundary.points[t[1]],
                                     boundary.points[t[2]]};
   };
-  std::vector<GridBox> boxes;
-  boxes.reserve(boundary.triangles.size());
-  for (const Triangle& t : boundary.triangles) boxes.push_back(box_of(boundary.points, t));
+  const std::vector<GridBox> boxes = boxes_of(boundary.points, boundary.triangles);
   const BoxTree tree(boxes);
 
   std::map<std::pair<std::uint32_t, std::uint32_t>, Point3> found;
