@@ -35,7 +35,7 @@ sys.path.insert(0, str(ROOT / "clients" / "python"))
 from citymesh_client import CitymeshError, Client  # noqa: E402
 
 PROCESS = "export-for-simulation"
-WEST, SOUTH, EAST, NORTH = 13.38, 52.49, 13.43, 52.53  # of the test data
+WEST, SOUTH, EAST, NORTH = 13.385, 52.495, 13.41, 52.51  # of the test data
 BOXES = 12
 FIRST_MARK = 10_000  # an option that changes nothing, and is another one for every job
 
