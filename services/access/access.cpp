@@ -105,6 +105,11 @@ Result<std::unique_ptr<Access>> Access::open(AccessOptions options) {
   return access;
 }
 
+const Access& Access::for_everybody() {
+  static const auto access = std::move(open({})).value();
+  return *access;
+}
+
 bool Access::is_required() const {
   return !options_.api_keys.empty() || !options_.oidc_jwks_file.empty();
 }

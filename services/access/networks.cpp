@@ -14,6 +14,14 @@ constexpr unsigned kIpv4Offset_bits = 96;  // of an IPv4 address in an IPv6 addr
 
 bool is_ipv4(std::string_view address) { return address.find(':') == std::string_view::npos; }
 
+/// Of `192.0.2.7:80`, `[2001:db8::1]:80` and `[2001:db8::1]`.
+std::string_view without_port(std::string_view text) {
+  if (text.starts_with('[')) return text.substr(1, std::min(text.find(']'), text.size()) - 1);
+  const auto colon = text.find(':');
+  const bool has_port = colon != std::string_view::npos && text.find(':', colon + 1) == text.npos;
+  return has_port ? text.substr(0, colon) : text;
+}
+
 }  // namespace
 
 bool Networks::read(std::string_view text, Bytes& address) {
@@ -67,15 +75,20 @@ bool Networks::contains(std::string_view text) const {
   });
 }
 
-std::string client_address(std::string_view peer, const std::vector<std::string>& forwarded,
-                           const Networks& trusted_proxies) {
+Sender sender_of(std::string_view peer, const std::vector<std::string>& forwarded,
+                 const Networks& trusted_proxies) {
   static const auto every_address = *Networks::parse("0.0.0.0/0, ::/0");
-  std::string client(peer);
-  for (auto hop = forwarded.rbegin(); hop != forwarded.rend(); ++hop) {
-    if (!trusted_proxies.contains(client) || !every_address.contains(*hop)) break;
-    client = *hop;
+  Sender sender{std::string(peer), 0};
+  auto hop = forwarded.rbegin();
+  while (trusted_proxies.contains(sender.address)) {
+    ++sender.proxies;
+    if (hop == forwarded.rend()) break;
+    const auto address = without_port(*hop);
+    if (!every_address.contains(address)) break;
+    sender.address = address;
+    ++hop;
   }
-  return client;
+  return sender;
 }
 
 bool is_loopback_address(std::string_view address) {

@@ -32,11 +32,16 @@ class Networks {
   std::vector<Network> networks_;
 };
 
-/// The address that a request comes from: the peer, or behind trusted proxies the last one in
-/// `forwarded` (from client to proxy) that is none of them. What is no address ends the search at
-/// the one before it.
-std::string client_address(std::string_view peer, const std::vector<std::string>& forwarded,
-                           const Networks& trusted_proxies);
+/// Where a request comes from.
+struct Sender {
+  std::string address{};    ///< of the client
+  std::size_t proxies = 0;  ///< trusted ones between it and us
+};
+
+/// The peer, or behind trusted proxies the last of the addresses `forwarded` (from client to proxy,
+/// perhaps with ports) that is none of them. What is no address ends the search at the one before.
+Sender sender_of(std::string_view peer, const std::vector<std::string>& forwarded,
+                 const Networks& trusted_proxies);
 
 /// 127.0.0.0/8 and ::1.
 bool is_loopback_address(std::string_view address);

@@ -35,6 +35,8 @@ int could_not_run(const Error& error);
 int run_command(const RunArguments& arguments);
 int index_command(const IndexArguments& arguments);
 int serve_command(const ServeOptions& options);
+/// Prints a new API key on stderr and its line for the file of keys on stdout.
+int make_key_command(const std::string& name, const std::string& role);
 int processes_command();
 int openapi_command(const std::string& server_url);
 

@@ -112,6 +112,27 @@ void add_index(CLI::App& program, IndexArguments& arguments, int& code) {
   command.callback([&] { code = index_command(arguments); });
 }
 
+void add_make_key(CLI::App& program, int& code) {
+  auto& command = *program.add_subcommand("make-key",
+                                          "makes an API key for the service: `citymesh make-key "
+                                          "map-portal submit >> keys`");
+  const auto name = std::make_shared<std::string>();
+  const auto role = std::make_shared<std::string>();
+  command.add_option("name", *name, "the client; keys of one name stand for one client")
+      ->required()
+      ->type_name("NAME");
+  command
+      .add_option("role", *role,
+                  "read-own (see its jobs), submit (and make and dismiss them) or admin (and those "
+                  "of all)")
+      ->required()
+      ->type_name("ROLE");
+  command.footer(
+      "The key goes to stderr and is kept nowhere; its line for the file that `serve --api_keys` "
+      "reads goes to stdout.");
+  command.callback([name, role, &code] { code = make_key_command(*name, *role); });
+}
+
 void add_openapi(CLI::App& program, int& code) {
   auto& command =
       *program.add_subcommand("openapi", "prints the OpenAPI description of the REST API");
@@ -142,6 +163,7 @@ int run_program(int argc, char** argv) {
   program.add_subcommand("processes", "prints the processes with their inputs and outputs")
       ->callback([&] { code = processes_command(); });
 
+  add_make_key(program, code);
   add_openapi(program, code);
 
   try {
@@ -153,7 +175,7 @@ int run_program(int argc, char** argv) {
   if (program.get_subcommands().empty())
     return could_not_run(fail(ErrorCode::InvalidArgument,
                               "a subcommand is missing, expected one of run, validate, heal, "
-                              "index, serve, processes, openapi; --help tells more"));
+                              "index, serve, make-key, processes, openapi; --help tells more"));
   return code;
 }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <mutex>
@@ -12,6 +13,7 @@
 
 #include "core/base/version.h"
 #include "core/source/source.h"
+#include "services/access/access.h"
 #include "services/apps/commands.h"
 #include "services/apps/signals.h"
 #include "services/catalogue/catalogue.h"
@@ -47,7 +49,17 @@ WorkerOptions worker_options(const ServeOptions& options) {
           .job_timeout_ms = milliseconds(options.job_timeout_s)};
 }
 
-RestOptions rest_options(const ServeOptions& options) {
+AccessOptions access_options(const ServeOptions& options) {
+  return {.api_keys = options.api_keys,
+          .oidc_jwks_file = options.oidc_jwks_file,
+          .token_rules = {.issuer = options.oidc_issuer,
+                          .audience = options.oidc_audience,
+                          .role_claim = options.oidc_role_claim,
+                          .role_prefix = options.oidc_role_prefix},
+          .trusted_proxies = options.trusted_proxies};
+}
+
+RestOptions rest_options(const ServeOptions& options, const Access& access) {
   RestOptions rest;
   rest.host = options.listen.host;
   rest.port = options.listen.port;
@@ -55,36 +67,57 @@ RestOptions rest_options(const ServeOptions& options) {
   rest.max_body_bytes = options.max_body_bytes;
   rest.max_connections = options.max_connections;
   rest.sync_wait_s = options.sync_wait_s;
+  rest.access = &access;
   return rest;
 }
 
-RpcOptions rpc_options(const ServeOptions& options) {
+RpcOptions rpc_options(const ServeOptions& options, const Access& access) {
   return {.host = options.grpc.host,
           .port = options.grpc.port,
           .max_message_bytes = static_cast<int>(options.max_body_bytes),
-          .max_watches = options.max_watches};
+          .max_watches = options.max_watches,
+          .access = &access};
+}
+
+/// Does `work` now and then until it is stopped.
+std::jthread start_repeating(std::chrono::seconds pause, std::function<void()> work) {
+  return std::jthread([pause, work = std::move(work)](const std::stop_token& stop) {
+    std::mutex mutex;
+    std::condition_variable_any wake;
+    std::unique_lock lock(mutex);
+    do work();
+    while (!wake.wait_for(lock, stop, pause, [&] { return stop.stop_requested(); }) &&
+           !stop.stop_requested());
+  });
+}
+
+/// Keys and certificates change while the service runs.
+std::jthread start_reading_access(Access& access, Log& log) {
+  constexpr auto kPause = std::chrono::seconds(5);
+  return start_repeating(kPause, [&access, &log, told = std::string()]() mutable {
+    const auto changed = access.reload();
+    if (changed && *changed) log.info("access_read", {{"message", "keys have changed"}});
+    const auto problem = changed ? std::string() : changed.error().message;
+    if (!problem.empty() && problem != told)
+      log.error("access_not_read", {{"message", problem + "; the keys read before stay in force"}});
+    told = problem;
+  });
 }
 
 /// Removes what is kept long enough, now and then, until it is stopped.
 std::jthread start_sweeping(EmbeddedStore& store, ResultStore& results, const ServeOptions& options,
                             Log& log) {
+  constexpr auto kPause = std::chrono::seconds(30);
   const RetentionOptions retention{.keep_results_ms = milliseconds(options.keep_results_s),
                                    .keep_jobs_ms = milliseconds(options.keep_jobs_s),
                                    .max_result_bytes = options.max_result_bytes};
-  return std::jthread([&store, &results, &log, retention](const std::stop_token& stop) {
-    constexpr auto kPause = std::chrono::seconds(30);
-    std::mutex mutex;
-    std::condition_variable_any wake;
-    std::unique_lock lock(mutex);
-    do {
-      if (const auto swept = sweep(store, results, retention, now_ms()); !swept)
-        log.error("sweep_failed", {{"message", swept.error().message}});
-      else if (swept->bytes_freed > 0 || swept->jobs_forgotten > 0)
-        log.info("swept", {{"results_expired", swept->results_expired},
-                           {"jobs_forgotten", swept->jobs_forgotten},
-                           {"bytes_freed", swept->bytes_freed}});
-    } while (!wake.wait_for(lock, stop, kPause, [&] { return stop.stop_requested(); }) &&
-             !stop.stop_requested());
+  return start_repeating(kPause, [&store, &results, &log, retention] {
+    if (const auto swept = sweep(store, results, retention, now_ms()); !swept)
+      log.error("sweep_failed", {{"message", swept.error().message}});
+    else if (swept->bytes_freed > 0 || swept->jobs_forgotten > 0)
+      log.info("swept", {{"results_expired", swept->results_expired},
+                         {"jobs_forgotten", swept->jobs_forgotten},
+                         {"bytes_freed", swept->bytes_freed}});
   });
 }
 
@@ -98,7 +131,7 @@ void announce(Log& log, const ServeOptions& options, const Endpoint& rest, const
                          {"workers", options.workers},
                          {"version", version()}});
   for (const auto& endpoint : {rest, rpc})
-    if (!is_loopback(endpoint))
+    if (!is_loopback(endpoint) && options.insecure)
       log.warning("open_to_the_network",
                   {{"address", to_string(endpoint)},
                    {"message", "anyone who reaches this address may submit and read jobs"}});
@@ -137,6 +170,8 @@ Result<void> serve(const ServeOptions& options) {
   if (auto checked = check(options); !checked) return checked;
   const StopOnSignal stop;
   Log log(std::cout, log_level(options.log_level));
+  const auto access = Access::open(access_options(options));
+  if (!access) return access.error();
   auto state = StateFolder::open(options.state);
   if (!state) return state.error();
   const auto source = open_data(options, log, stop);
@@ -156,10 +191,12 @@ Result<void> serve(const ServeOptions& options) {
   metrics.on_collect([&queue = **store, &metrics] {
     if (const auto waiting = queue.waiting()) metrics.set_queue_length(*waiting);
   });
-  JobManager jobs(**store, **store, **results, {.max_open_jobs = options.max_open_jobs});
+  JobManager jobs(
+      **store, **store, **results,
+      {.max_open_jobs = options.max_open_jobs, .max_open_jobs_per_owner = options.max_client_jobs});
   WorkerPool workers(**store, **store, **results, *source, log, metrics, worker_options(options));
-  RestServer rest(jobs, metrics, rest_options(options));
-  RpcServer rpc(jobs, metrics, rpc_options(options));
+  RestServer rest(jobs, metrics, rest_options(options, **access));
+  RpcServer rpc(jobs, metrics, rpc_options(options, **access));
 
   const auto rest_port = rest.start();
   if (!rest_port) return rest_port.error();
@@ -167,6 +204,7 @@ Result<void> serve(const ServeOptions& options) {
   if (!rpc_port) return rpc_port.error();
   workers.start();
   const auto sweeper = start_sweeping(**store, **results, options, log);
+  const auto reader = start_reading_access(**access, log);
   announce(log, options, {options.listen.host, *rest_port}, {options.grpc.host, *rpc_port});
 
   stop.wait();

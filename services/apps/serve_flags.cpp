@@ -78,8 +78,24 @@ void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> r
                   "base of all links, for a service behind a proxy; default: from the request")
       ->type_name("URL");
   const auto add = [&command](const char* name, auto& value, const char* what) {
-    command.add_option(name, value, what)->capture_default_str();
+    return command.add_option(name, value, what)->capture_default_str();
   };
+  add("--api_keys", options.api_keys,
+      "file of the API keys that are accepted, by lines of `citymesh make-key`")
+      ->type_name("FILE");
+  add("--oidc_jwks_file", options.oidc_jwks_file,
+      "JSON Web Key Set of those who issue the tokens that are accepted")
+      ->type_name("FILE");
+  add("--oidc_issuer", options.oidc_issuer, "issuer that tokens must name (`iss`)");
+  add("--oidc_audience", options.oidc_audience, "audience that tokens must name (`aud`)");
+  add("--oidc_role_claim", options.oidc_role_claim,
+      "claim with the roles of a token, or the path to it, for example realm_access.roles");
+  add("--oidc_role_prefix", options.oidc_role_prefix,
+      "what the names of our roles begin with in that claim");
+  add("--trusted_proxies", options.trusted_proxies,
+      "networks by comma whose Forwarded and X-Forwarded headers are believed");
+  command.add_flag("--insecure", options.insecure,
+                   "listen on the network although everybody may do everything");
   add("--workers", options.workers, "jobs worked on at the same time");
   add("--threads", options.threads, "threads of all workers together; 0: one per core");
   add("--lease_s", options.lease_s, "a worker not heard of for so long counts as dead");
@@ -91,6 +107,9 @@ void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> r
   add("--max_result_bytes", options.max_result_bytes,
       "of all results together, above it the oldest go; 0: no limit");
   add("--max_open_jobs", options.max_open_jobs, "accepted and running jobs; more are refused");
+  add("--max_client_jobs", options.max_client_jobs,
+      "the same of each client; without authentication by address, those on this machine apart; "
+      "0: no limit of its own");
   add("--max_body_bytes", options.max_body_bytes, "size of a request");
   add("--max_connections", options.max_connections, "REST connections at the same time");
   add("--sync_wait_s", options.sync_wait_s,

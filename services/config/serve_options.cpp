@@ -23,6 +23,37 @@ Error wrong(std::string_view name, const Value& value, std::string_view expected
               fmt::format("{} is {}, expected {}", name, value, expected));
 }
 
+bool knows_clients(const ServeOptions& options) {
+  return !options.api_keys.empty() || !options.oidc_jwks_file.empty();
+}
+
+Result<void> check_access(const ServeOptions& options) {
+  const bool tokens = !options.oidc_jwks_file.empty();
+  for (const auto& [name, value] : {std::pair("--oidc_issuer", options.oidc_issuer),
+                                    std::pair("--oidc_audience", options.oidc_audience)}) {
+    if (tokens && value.empty())
+      return fail(ErrorCode::InvalidArgument,
+                  fmt::format("{} is missing; expected with --oidc_jwks_file, so that tokens for "
+                              "others are refused",
+                              name));
+    if (!tokens && !value.empty())
+      return wrong(name, value, "a file of public keys in --oidc_jwks_file beside it");
+  }
+  if (tokens && options.oidc_role_claim.empty())
+    return wrong("--oidc_role_claim", "empty", "the name of a claim, for example roles");
+  if (knows_clients(options) && options.insecure)
+    return fail(ErrorCode::InvalidArgument,
+                "--insecure is given, expected not together with --api_keys or --oidc_jwks_file");
+  if (knows_clients(options) || options.insecure) return {};
+  for (const auto& [name, endpoint] :
+       {std::pair("--listen", options.listen), std::pair("--grpc", options.grpc)})
+    if (!is_loopback(endpoint))
+      return wrong(name, to_string(endpoint),
+                   "a loopback address, or --api_keys or --oidc_jwks_file: whoever reaches it "
+                   "could submit, read and dismiss jobs (--insecure if that is meant)");
+  return {};
+}
+
 }  // namespace
 
 Result<Endpoint> parse_endpoint(std::string_view text) {
@@ -97,7 +128,7 @@ Result<void> check(const ServeOptions& options) {
   const auto& url = options.public_url;
   if (!url.empty() && !url.starts_with("http://") && !url.starts_with("https://"))
     return wrong("--public_url", url, "a URL that starts with http:// or https://");
-  return {};
+  return check_access(options);
 }
 
 }  // namespace citymesh

@@ -28,6 +28,16 @@ struct ServeOptions {
   Endpoint grpc{"127.0.0.1", 50051};
   std::string public_url{};  ///< base of all links; empty: from the request
 
+  // Who may do what. With neither file everybody may do everything.
+  std::filesystem::path api_keys{};        ///< file that `make-key` makes the lines of
+  std::filesystem::path oidc_jwks_file{};  ///< public keys of those who issue tokens
+  std::string oidc_issuer{};               ///< `iss` of tokens
+  std::string oidc_audience{};             ///< `aud` of tokens
+  std::string oidc_role_claim = "roles";
+  std::string oidc_role_prefix = "citymesh:";  ///< of the names in that claim that count
+  bool insecure = false;          ///< everybody on the network may do everything, and is meant to
+  std::string trusted_proxies{};  ///< networks whose forwarded headers are believed
+
   unsigned workers = 1;            ///< jobs worked on at the same time
   unsigned threads = 0;            ///< threads of all workers together; 0: one per core
   double lease_s = 30;             ///< a worker not heard of for so long counts as dead
@@ -39,6 +49,7 @@ struct ServeOptions {
   std::uint64_t max_result_bytes = 0;  ///< of all jobs; the oldest results go first; 0: no limit
 
   std::uint32_t max_open_jobs = 1000;      ///< accepted and running; more are refused
+  std::uint32_t max_client_jobs = 100;     ///< the same of each client; 0: no limit of its own
   std::uint64_t max_body_bytes = 1 << 20;  ///< of a request, REST and gRPC
   std::uint32_t max_connections = 1024;    ///< REST
   double sync_wait_s = 30;  ///< longest wait of a synchronous execution; 0: every one is a job

@@ -12,6 +12,7 @@
 #include "services/rest/job_query.h"
 #include "services/rest/links.h"
 #include "services/rest/openapi.h"
+#include "services/rest/origin.h"
 #include "services/rest/pages.h"
 #include "services/rest/problem.h"
 #include "services/rest/processes.h"
@@ -21,11 +22,11 @@ namespace {
 
 constexpr std::string_view kAllowedHeaders =
     "Accept, Authorization, Content-Type, Idempotency-Key, If-Match, If-None-Match, If-Range, "
-    "Last-Event-ID, Prefer, Range";
+    "Last-Event-ID, Prefer, Range, X-API-Key";
 constexpr std::string_view kExposedHeaders =
     "Location, Content-Location, Link, Preference-Applied, Content-Disposition, ETag, "
     "Content-Range, "
-    "Accept-Ranges, Retry-After";
+    "Accept-Ranges, Retry-After, WWW-Authenticate";
 
 /// Matches `/jobs/{id}` against segments; the values of the braces, or nothing.
 std::optional<std::vector<std::string>> match(std::string_view pattern,
@@ -65,16 +66,16 @@ const Api::Route Api::kRoutes[] = {
     {"GET", "/conformance", &Api::conformance},
     {"GET", "/processes", &Api::process_list},
     {"GET", "/processes/{id}", &Api::process},
-    {"POST", "/processes/{id}/execution", &Api::execute},
-    {"GET", "/jobs", &Api::job_list},
-    {"GET", "/jobs/{id}", &Api::job},
-    {"DELETE", "/jobs/{id}", &Api::dismiss},
-    {"GET", "/jobs/{id}/events", &Api::events},
-    {"GET", "/jobs/{id}/results", &Api::results},
-    {"GET", "/jobs/{id}/results/{output}", &Api::result},
+    {"POST", "/processes/{id}/execution", &Api::execute, Role::Submit},
+    {"GET", "/jobs", &Api::job_list, Role::ReadOwn},
+    {"GET", "/jobs/{id}", &Api::job, Role::ReadOwn},
+    {"DELETE", "/jobs/{id}", &Api::dismiss, Role::Submit},
+    {"GET", "/jobs/{id}/events", &Api::events, Role::ReadOwn},
+    {"GET", "/jobs/{id}/results", &Api::results, Role::ReadOwn},
+    {"GET", "/jobs/{id}/results/{output}", &Api::result, Role::ReadOwn},
     {"GET", "/healthz", &Api::healthz},
     {"GET", "/readyz", &Api::readyz},
-    {"GET", "/metrics", &Api::metrics},
+    {"GET", "/metrics", &Api::metrics, Role::ReadOwn},
 };
 
 Api::Api(JobManager& jobs, Metrics& metrics, ApiOptions options)
@@ -131,8 +132,9 @@ Response Api::dispatch(const Request& request, std::string_view& route) const {
   auto target = parse_target(request.target);
   if (!target)
     return problem_response(problem_kind(target.error().code), target.error().message, accept);
-  auto base = base_url(request);
-  if (!base) return problem_response(problem_kind(base.error().code), base.error().message, accept);
+  const auto origin = origin_of(request, options_.access->trusted_proxies(), options_.public_url);
+  if (!origin)
+    return problem_response(problem_kind(origin.error().code), origin.error().message, accept);
   if (const auto f = target->query.find("f");
       f != target->query.end() && f->second != "html" && f->second != "json")
     return problem_response(
@@ -142,7 +144,7 @@ Response Api::dispatch(const Request& request, std::string_view& route) const {
   Call call{request,
             request.method == "HEAD" ? "GET" : request.method,
             *std::move(target),
-            *std::move(base),
+            origin->base,
             {},
             accept};
   std::string allowed;
@@ -151,6 +153,7 @@ Response Api::dispatch(const Request& request, std::string_view& route) const {
     if (!values) continue;
     route = candidate.pattern;
     if (candidate.method == call.method) {
+      if (auto refused = refusal(candidate, origin->client, call)) return *std::move(refused);
       call.values = *std::move(values);
       return (this->*candidate.handler)(call);
     }
@@ -177,12 +180,31 @@ Response Api::dispatch(const Request& request, std::string_view& route) const {
   return response;
 }
 
-Result<std::string> Api::base_url(const Request& request) const {
-  if (!options_.public_url.empty()) return options_.public_url;
-  const auto host = request.headers.get("Host");
-  if (!is_valid_host(host))
-    return fail(ErrorCode::InvalidArgument, "the Host header is missing or no host name");
-  return "http://" + host;
+/// Finds out whose call it is; the answer when that client may not make it.
+std::optional<Response> Api::refusal(const Route& route, const std::string& address,
+                                     Call& call) const {
+  if (route.needs == Role::None) return std::nullopt;
+  const auto& headers = call.request.headers;
+  auto client =
+      options_.access->identify({headers.get("Authorization"), headers.get("X-API-Key"), address});
+  const bool shown = !client || !client->name.empty() || !options_.access->is_required();
+  if (!client || !shown) {
+    auto answer = problem_response(
+        problems::kUnauthorized,
+        client ? "this needs an API key or a token, expected `Authorization: Bearer …` or (API "
+                 "key) `X-API-Key: …`"
+               : client.error().message,
+        call.accept);
+    answer.headers.set("WWW-Authenticate",
+                       client ? R"(Bearer realm="citymesh")"
+                              : R"(Bearer realm="citymesh", error="invalid_token")");
+    return answer;
+  }
+  if (const auto allowed = require(*client, route.needs); !allowed)
+    return problem_response(problem_kind(allowed.error().code), allowed.error().message,
+                            call.accept);
+  call.client = *std::move(client);
+  return std::nullopt;
 }
 
 void Api::add_common_headers(const Request& request, Response& response) const {
@@ -209,7 +231,8 @@ Response Api::conformance(const Call& call) const {
 }
 
 Response Api::api_definition(const Call& call) const {
-  auto document = openapi_json(call.base);
+  const bool secured = options_.access->is_required();
+  auto document = openapi_json(call.base, secured ? &Api::is_open : nullptr);
   if (wants_page(call.accept, call.target.query))
     return page_response(200, api_page(call.base, document));
   return text_response(200, kOpenApiMediaType, std::move(document));
@@ -237,6 +260,15 @@ Response Api::process(const Call& call) const {
   if (wants_page(call.accept, call.target.query))
     return page_response(200, process_page(call.base, *process));
   return json_response(process_description_json(call.base, *process));
+}
+
+bool Api::is_open(std::string_view method, std::string_view path) {
+  const auto target = parse_target(path);
+  for (const auto& route : kRoutes)
+    if (target && equal_without_case(route.method, method) &&
+        match(route.pattern, target->segments))
+      return route.needs == Role::None;
+  return false;
 }
 
 Response Api::healthz(const Call&) const { return text_response(200, "text/plain", "ok\n"); }

@@ -2,10 +2,12 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "services/access/access.h"
 #include "services/jobs/job_manager.h"
 #include "services/rest/message.h"
 #include "services/telemetry/metrics.h"
@@ -17,6 +19,8 @@ struct ApiOptions {
   std::string cors_allow_origin = "*";
   std::uint64_t max_inline_bytes = 16 << 20;
   double sync_wait_s = 30;  ///< how long a synchronous execution is waited for; 0: none is
+  /// Who may do what; must outlive the API.
+  const Access* access = &Access::for_everybody();
 };
 
 /// The resources of OGC API - Processes 1.0 as a function from request to response; it knows no
@@ -30,6 +34,9 @@ class Api {
   /// `follow`.
   Response handle(const Request& request) const;
 
+  /// Whether everybody may use a path of the description, whoever else has to show who he is.
+  static bool is_open(std::string_view method, std::string_view path);
+
  private:
   /// A request with what routing found out about it.
   struct Call {
@@ -39,16 +46,18 @@ class Api {
     std::string base;                 ///< scheme, host and prefix of links, no slash at the end
     std::vector<std::string> values;  ///< what the pattern's braces stand for
     std::string accept;
+    Client client{};
   };
   struct Route {
     std::string_view method;
     std::string_view pattern;
     Response (Api::*handler)(const Call& call) const;
+    Role needs = Role::None;
   };
   static const Route kRoutes[];
 
   Response dispatch(const Request& request, std::string_view& route) const;
-  Result<std::string> base_url(const Request& request) const;
+  std::optional<Response> refusal(const Route& route, const std::string& address, Call& call) const;
   void count(const Request& request, std::string_view route, int status,
              std::chrono::steady_clock::time_point start) const;
   void add_common_headers(const Request& request, Response& response) const;

@@ -94,7 +94,7 @@ Response Api::execute(const Call& call) const {
   const auto key = idempotency_key(call.request.headers);
   if (!key)
     return problem_response(problem_kind(key.error().code), key.error().message, call.accept);
-  const auto job = jobs_.submit(*std::move(spec), *key);
+  const auto job = jobs_.submit(*std::move(spec), *key, call.client.name);
   if (!job)
     return problem_response(job.error().code == ErrorCode::AlreadyExists
                                 ? problems::kIdempotencyKeyUsed

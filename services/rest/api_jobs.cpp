@@ -27,6 +27,7 @@ Response Api::job_list(const Call& call) const {
   auto query = parse_job_query(call.target.query);
   if (!query) return problem_response(problems::kInvalidQuery, query.error().message, call.accept);
 
+  if (call.client.role != Role::Admin) query->filter.owner = call.client.name;
   // The store selects by process and state; what it cannot select by is left out here. The next
   // page begins behind the last job looked at, so pages neither overlap nor leave gaps.
   const auto wanted = query->filter.limit;
@@ -66,12 +67,16 @@ Response Api::job_list(const Call& call) const {
   return json_response(job_list_json(call.base, jobs, url({}), next));
 }
 
+/// A job that the client may not see does not exist for it.
 Result<Job> Api::find_job(const Call& call) const {
   const auto& id = call.values[0];
   if (!is_job_id(id))
     return fail(ErrorCode::NotFound,
                 fmt::format("job '{}' does not exist; expected the id of a job", id));
-  return jobs_.get(id);
+  auto job = jobs_.get(id);
+  if (job && !may_see(call.client, job->owner))
+    return fail(ErrorCode::NotFound, fmt::format("job '{}' does not exist", id));
+  return job;
 }
 
 Response Api::job(const Call& call) const {

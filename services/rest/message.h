@@ -34,6 +34,8 @@ struct Request {
   std::string target{};  ///< as received: path and query, percent-encoded
   Headers headers{};
   std::string body{};
+  std::string peer{};   ///< address of the other end of the connection
+  bool secure = false;  ///< whether it came over TLS
 };
 
 /// A result file that is read while it is sent.

@@ -329,15 +329,34 @@ Json paths() {
   return all;
 }
 
+/// The two ways to show who one is, and where nobody has to.
+void add_security(Json& document, bool (*is_open)(std::string_view method, std::string_view path)) {
+  document["components"]["securitySchemes"] = {
+      {"bearer",
+       {{"type", "http"},
+        {"scheme", "bearer"},
+        {"description", "An API key, or a token of the identity provider"}}},
+      {"apiKey",
+       {{"type", "apiKey"},
+        {"in", "header"},
+        {"name", "X-API-Key"},
+        {"description", "An API key"}}}};
+  document["security"] = Json::array({{{"bearer", Json::array()}}, {{"apiKey", Json::array()}}});
+  for (auto& [path, operations] : document["paths"].items())
+    for (auto& [method, described] : operations.items())
+      if (is_open(method, path)) described["security"] = Json::array();
+}
+
 }  // namespace
 
-std::string openapi_json(std::string_view server_url) {
+std::string openapi_json(std::string_view server_url,
+                         bool (*is_open)(std::string_view method, std::string_view path)) {
   Json problem = {{"description", "What is wrong"},
                   {"content", content("application/problem+json", schema_ref("problem"))}};
   problem["content"]["application/json"] = {{"schema", schema_ref("problem")}};
   problem["content"]["text/html"] = {{"schema", text()}};
 
-  const Json document = {
+  Json document = {
       {"openapi", "3.0.3"},
       {"info",
        {{"title", "citymesh"},
@@ -363,6 +382,7 @@ std::string openapi_json(std::string_view server_url) {
           {"offset", parameter("offset", "query", "Entries to skip", whole_number(0))},
           {"processID", parameter("processID", "path", "Id of a process", text())},
           {"jobID", parameter("jobID", "path", "Id of a job", text())}}}}}};
+  if (is_open != nullptr) add_security(document, is_open);
   return dump(document);
 }
 

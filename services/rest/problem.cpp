@@ -48,6 +48,7 @@ const ErrorRow& row_of(ErrorCode code) {
 }  // namespace
 
 namespace problems {
+const ProblemKind kUnauthorized{401, kBlank, "Unauthorized"};
 const ProblemKind kNoSuchProcess{404, OGC_EXCEPTION "no-such-process", "No such process"};
 const ProblemKind kNoSuchJob{404, OGC_EXCEPTION "no-such-job", "No such job"};
 const ProblemKind kNoSuchOutput{404, OGC_EXCEPTION "no-such-output", "No such output"};

@@ -23,6 +23,7 @@ const ProblemKind& failed_job_kind(ErrorCode code);
 
 /// Problems with a meaning of their own in HTTP or OGC API - Processes.
 namespace problems {
+extern const ProblemKind kUnauthorized;
 extern const ProblemKind kNoSuchProcess;
 extern const ProblemKind kNoSuchJob;
 extern const ProblemKind kNoSuchOutput;

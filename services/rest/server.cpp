@@ -131,9 +131,14 @@ class Alarm : public std::enable_shared_from_this<Alarm> {
 };
 
 struct Session {
-  explicit Session(tcp::socket socket) : stream(std::move(socket)) {}
+  explicit Session(tcp::socket socket) : stream(std::move(socket)) {
+    error_code gone;
+    const auto other_end = stream.socket().remote_endpoint(gone);
+    if (!gone) peer = other_end.address().to_string();
+  }
   beast::tcp_stream stream;
-  bool busy = false;  ///< between a request's header and the end of its response; strand only
+  std::string peer{};  ///< address of the client
+  bool busy = false;   ///< between a request's header and the end of its response; strand only
 };
 
 }  // namespace
@@ -144,7 +149,8 @@ struct RestServer::Impl {
         jobs(jobs_in),
         api(jobs, metrics,
             {options.public_url, options.cors_allow_origin, options.max_inline_bytes,
-             options.sync_wait_s}) {}
+             options.sync_wait_s,
+             options.access != nullptr ? options.access : &Access::for_everybody()}) {}
 
   Result<std::uint16_t> start();
   void stop();
@@ -329,6 +335,7 @@ awaitable<bool> RestServer::Impl::answer_next(Session& session, beast::flat_buff
   for (const auto& field : message)
     request.headers.add(view(field.name_string()), std::string(view(field.value())));
   request.body = std::move(message.body());
+  request.peer = session.peer;
   const bool head = request.method == "HEAD";
 
   auto handle = [this, request = std::move(request)] { return api.handle(request); };

@@ -8,6 +8,7 @@
 
 namespace citymesh {
 
+class Access;
 class JobManager;
 class Metrics;
 
@@ -27,6 +28,7 @@ struct RestOptions {
   double write_timeout_s = 60;   ///< without any progress of a response
   double drain_timeout_s = 5;    ///< responses under way get this long when stopping
   std::string cors_allow_origin = "*";  ///< empty: no CORS headers
+  const Access* access = nullptr;  ///< who may do what, outlives the server; null: everybody all
 };
 
 /// OGC API - Processes 1.0 over HTTP/1.1. Translates to and from JobManager; keeps no state of its

@@ -8,11 +8,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <map>
 #include <utility>
 
 #include "citymesh/v1/jobs.grpc.pb.h"
 #include "core/pipeline/pipeline.h"
 #include "services/jobs/job_manager.h"
+#include "services/rpc/caller.h"
 #include "services/rpc/messages.h"
 #include "services/telemetry/metrics.h"
 
@@ -57,53 +59,56 @@ grpc::StatusCode to_grpc(ErrorCode code) {
 
 grpc::Status to_status(const Error& error) { return {to_grpc(error.code), error.message}; }
 
-/// Counts a call and its time when it ends.
-template <class Call>
-grpc::Status measured(Metrics& metrics, std::string_view method, const Call& call) {
-  const auto start = Clock::now();
-  auto status = [&]() -> grpc::Status {
-    try {
-      return call();
-    } catch (const std::exception& error) {
-      return {grpc::StatusCode::INTERNAL, error.what()};
-    }
-  }();
-  metrics.rpc_request(method, fmt::format("{}", static_cast<int>(status.error_code())),
-                      std::chrono::duration<double>(Clock::now() - start).count());
-  return status;
+using Metadata = std::multimap<grpc::string_ref, grpc::string_ref>;
+
+std::multimap<std::string, std::string> texts(const Metadata& metadata) {
+  std::multimap<std::string, std::string> all;
+  for (const auto& [name, value] : metadata)
+    all.emplace(std::string(name.data(), name.size()), std::string(value.data(), value.size()));
+  return all;
 }
 
 class JobsService final : public v1::Jobs::Service {
  public:
-  JobsService(JobManager& jobs, Metrics& metrics, std::uint32_t max_watches)
-      : jobs_(jobs), metrics_(metrics), max_watches_(max_watches) {}
+  JobsService(JobManager& jobs, Metrics& metrics, const RpcOptions& options)
+      : jobs_(jobs),
+        metrics_(metrics),
+        access_(options.access != nullptr ? *options.access : Access::for_everybody()),
+        max_watches_(options.max_watches) {}
 
   void stop() { stopping_ = true; }
 
-  grpc::Status Submit(grpc::ServerContext*, const v1::SubmitRequest* request,
+  grpc::Status Submit(grpc::ServerContext* context, const v1::SubmitRequest* request,
                       v1::Job* answer) override {
-    return measured(metrics_, "Submit",
-                    [&] { return reply(jobs_.submit(to_spec(*request)), answer); });
+    return served(*context, "Submit", Role::Submit, [&](const Client& client) {
+      return reply(jobs_.submit(to_spec(*request), {}, client.name), answer);
+    });
   }
 
-  grpc::Status Get(grpc::ServerContext*, const v1::GetRequest* request, v1::Job* answer) override {
-    return measured(metrics_, "Get", [&] { return reply(jobs_.get(request->job_id()), answer); });
+  grpc::Status Get(grpc::ServerContext* context, const v1::GetRequest* request,
+                   v1::Job* answer) override {
+    return served(*context, "Get", Role::ReadOwn, [&](const Client& client) {
+      return reply(job_of(client, request->job_id()), answer);
+    });
   }
 
-  grpc::Status Dismiss(grpc::ServerContext*, const v1::GetRequest* request,
+  grpc::Status Dismiss(grpc::ServerContext* context, const v1::GetRequest* request,
                        v1::Job* answer) override {
-    return measured(metrics_, "Dismiss",
-                    [&] { return reply(jobs_.dismiss(request->job_id()), answer); });
+    return served(*context, "Dismiss", Role::Submit, [&](const Client& client) {
+      const auto job = job_of(client, request->job_id());
+      return reply(job ? jobs_.dismiss(request->job_id()) : job, answer);
+    });
   }
 
-  grpc::Status List(grpc::ServerContext*, const v1::ListRequest* request,
+  grpc::Status List(grpc::ServerContext* context, const v1::ListRequest* request,
                     v1::ListReply* answer) override {
-    return measured(metrics_, "List", [&] { return list(*request, *answer); });
+    return served(*context, "List", Role::ReadOwn,
+                  [&](const Client& client) { return list(client, *request, *answer); });
   }
 
-  grpc::Status Processes(grpc::ServerContext*, const v1::ProcessesRequest*,
+  grpc::Status Processes(grpc::ServerContext* context, const v1::ProcessesRequest*,
                          v1::ProcessesReply* answer) override {
-    return measured(metrics_, "Processes", [&] {
+    return served(*context, "Processes", Role::None, [&](const Client&) {
       for (const auto& process : processes()) *answer->add_processes() = to_proto(process);
       return grpc::Status::OK;
     });
@@ -111,24 +116,63 @@ class JobsService final : public v1::Jobs::Service {
 
   grpc::Status Watch(grpc::ServerContext* context, const v1::GetRequest* request,
                      grpc::ServerWriter<v1::Job>* writer) override {
-    return measured(metrics_, "Watch", [&] { return watch(*context, request->job_id(), *writer); });
+    return served(*context, "Watch", Role::ReadOwn, [&](const Client& client) {
+      return watch(*context, client, request->job_id(), *writer);
+    });
   }
 
   grpc::Status FetchResult(grpc::ServerContext* context, const v1::FetchResultRequest* request,
                            grpc::ServerWriter<v1::Chunk>* writer) override {
-    return measured(metrics_, "FetchResult", [&] { return fetch(*context, *request, *writer); });
+    return served(*context, "FetchResult", Role::ReadOwn,
+                  [&](const Client& client) { return fetch(*context, client, *request, *writer); });
   }
 
  private:
+  /// Makes the call for its client, if that may; counts it and its time.
+  template <class Call>
+  grpc::Status served(const grpc::ServerContext& context, std::string_view method, Role needed,
+                      const Call& call) {
+    const auto start = Clock::now();
+    auto status = [&]() -> grpc::Status {
+      try {
+        if (needed == Role::None) return call(Client{});
+        const auto client = access_.identify(credentials_of(
+            context.peer(), texts(context.client_metadata()), access_.trusted_proxies()));
+        if (!client) return {grpc::StatusCode::UNAUTHENTICATED, client.error().message};
+        if (client->name.empty() && client->role == Role::None)
+          return {grpc::StatusCode::UNAUTHENTICATED,
+                  "this needs an API key or a token, expected metadata `authorization: Bearer …` "
+                  "or (API key) `x-api-key: …`"};
+        if (const auto allowed = require(*client, needed); !allowed)
+          return to_status(allowed.error());
+        return call(*client);
+      } catch (const std::exception& error) {
+        return {grpc::StatusCode::INTERNAL, error.what()};
+      }
+    }();
+    metrics_.rpc_request(method, fmt::format("{}", static_cast<int>(status.error_code())),
+                         std::chrono::duration<double>(Clock::now() - start).count());
+    return status;
+  }
+
+  /// A job that the client may not see does not exist for it.
+  Result<Job> job_of(const Client& client, const std::string& id) {
+    auto job = jobs_.get(id);
+    if (job && !may_see(client, job->owner))
+      return fail(ErrorCode::NotFound, fmt::format("job '{}' does not exist", id));
+    return job;
+  }
+
   static grpc::Status reply(const Result<Job>& job, v1::Job* answer) {
     if (!job) return to_status(job.error());
     *answer = to_proto(*job);
     return grpc::Status::OK;
   }
 
-  grpc::Status list(const v1::ListRequest& request, v1::ListReply& answer) {
-    const auto filter = to_filter(request);
+  grpc::Status list(const Client& client, const v1::ListRequest& request, v1::ListReply& answer) {
+    auto filter = to_filter(request);
     if (!filter) return to_status(filter.error());
+    if (client.role != Role::Admin) filter->owner = client.name;
     const auto jobs = jobs_.list(*filter);
     if (!jobs) return to_status(jobs.error());
     const auto matched = jobs_.count(*filter);
@@ -138,7 +182,7 @@ class JobsService final : public v1::Jobs::Service {
     return grpc::Status::OK;
   }
 
-  grpc::Status watch(grpc::ServerContext& context, const std::string& id,
+  grpc::Status watch(grpc::ServerContext& context, const Client& client, const std::string& id,
                      grpc::ServerWriter<v1::Job>& writer) {
     struct Slot {
       explicit Slot(std::atomic<std::uint32_t>& count_in) : count(count_in), place(++count) {}
@@ -151,7 +195,7 @@ class JobsService final : public v1::Jobs::Service {
               fmt::format("{} watches are open and at most {} may be; use Get or try again later",
                           max_watches_, max_watches_)};
 
-    auto job = jobs_.get(id);
+    auto job = job_of(client, id);
     if (!job) return to_status(job.error());
     if (!writer.Write(to_proto(*job))) return grpc::Status::CANCELLED;
     auto seen = job->updated;
@@ -167,8 +211,9 @@ class JobsService final : public v1::Jobs::Service {
     return grpc::Status::OK;
   }
 
-  grpc::Status fetch(grpc::ServerContext& context, const v1::FetchResultRequest& request,
-                     grpc::ServerWriter<v1::Chunk>& writer) {
+  grpc::Status fetch(grpc::ServerContext& context, const Client& client,
+                     const v1::FetchResultRequest& request, grpc::ServerWriter<v1::Chunk>& writer) {
+    if (const auto job = job_of(client, request.job_id()); !job) return to_status(job.error());
     const auto files = jobs_.results(request.job_id());
     if (!files) return to_status(files.error());
     const auto file = std::ranges::find_if(*files, [&](const ResultFile& candidate) {
@@ -201,6 +246,7 @@ class JobsService final : public v1::Jobs::Service {
 
   JobManager& jobs_;
   Metrics& metrics_;
+  const Access& access_;
   const std::uint32_t max_watches_;
   std::atomic<std::uint32_t> watches_ = 0;
   std::atomic<bool> stopping_ = false;
@@ -215,7 +261,7 @@ std::string address(const std::string& host, std::uint16_t port) {
 
 struct RpcServer::Impl {
   Impl(JobManager& jobs, Metrics& metrics, RpcOptions options_in)
-      : options(std::move(options_in)), service(jobs, metrics, options.max_watches) {}
+      : options(std::move(options_in)), service(jobs, metrics, options) {}
 
   RpcOptions options;
   JobsService service;

@@ -8,6 +8,7 @@
 
 namespace citymesh {
 
+class Access;
 class JobManager;
 class Metrics;
 
@@ -16,6 +17,7 @@ struct RpcOptions {
   std::uint16_t port = 50051;  ///< 0: any free port, which start() returns
   int max_message_bytes = 1 << 20;
   std::uint32_t max_watches = 256;  ///< Watch streams at the same time; more: RESOURCE_EXHAUSTED
+  const Access* access = nullptr;   ///< who may do what, outlives the server; null: everybody all
 };
 
 /// The service Jobs of proto/citymesh/v1 with health and reflection. Translates to and from

@@ -35,16 +35,32 @@ TEST(NetworksTest, LoopbackIsKnown) {
     EXPECT_FALSE(is_loopback_address(other)) << other;
 }
 
-TEST(ClientAddressTest, TheLastAddressThatIsNoTrustedProxyIsTheClient) {
+TEST(SenderTest, TheLastAddressThatIsNoTrustedProxyIsTheClient) {
   const auto proxies = *Networks::parse("10.0.0.0/8");
-  EXPECT_EQ(client_address("10.0.0.1", {"203.0.113.9"}, proxies), "203.0.113.9");
-  EXPECT_EQ(client_address("10.0.0.1", {"203.0.113.9", "10.0.0.2"}, proxies), "203.0.113.9");
+  const auto address = [&](const char* peer, const std::vector<std::string>& forwarded) {
+    return sender_of(peer, forwarded, proxies).address;
+  };
+  EXPECT_EQ(address("10.0.0.1", {"203.0.113.9"}), "203.0.113.9");
+  EXPECT_EQ(address("10.0.0.1", {"203.0.113.9", "10.0.0.2"}), "203.0.113.9");
   // What the client itself has written in front does not count.
-  EXPECT_EQ(client_address("10.0.0.1", {"127.0.0.1", "203.0.113.9"}, proxies), "203.0.113.9");
-  EXPECT_EQ(client_address("198.51.100.4", {"203.0.113.9"}, proxies), "198.51.100.4");
-  EXPECT_EQ(client_address("10.0.0.1", {"unknown"}, proxies), "10.0.0.1");
-  EXPECT_EQ(client_address("10.0.0.1", {}, proxies), "10.0.0.1");
-  EXPECT_EQ(client_address("10.0.0.1", {"203.0.113.9"}, {}), "10.0.0.1");
+  EXPECT_EQ(address("10.0.0.1", {"127.0.0.1", "203.0.113.9"}), "203.0.113.9");
+  EXPECT_EQ(address("198.51.100.4", {"203.0.113.9"}), "198.51.100.4");
+  EXPECT_EQ(address("10.0.0.1", {"unknown"}), "10.0.0.1");
+  EXPECT_EQ(address("10.0.0.1", {}), "10.0.0.1");
+  EXPECT_EQ(address("10.0.0.1", {"203.0.113.9:4711"}), "203.0.113.9");
+  EXPECT_EQ(address("10.0.0.1", {"[2001:db8::9]:4711"}), "2001:db8::9");
+  EXPECT_EQ(address("10.0.0.1", {"2001:db8::9"}), "2001:db8::9");
+  for (const auto* broken : {"[", "[]", ":", "::1]:80", "[::1"})
+    EXPECT_NE(address("10.0.0.1", {broken}), "") << broken;
+  EXPECT_EQ(sender_of("10.0.0.1", {"203.0.113.9"}, {}).address, "10.0.0.1");
+}
+
+TEST(SenderTest, TrustedProxiesOnTheWayAreCounted) {
+  const auto proxies = *Networks::parse("10.0.0.0/8");
+  EXPECT_EQ(sender_of("198.51.100.4", {"203.0.113.9"}, proxies).proxies, 0u);
+  EXPECT_EQ(sender_of("10.0.0.1", {}, proxies).proxies, 1u);
+  EXPECT_EQ(sender_of("10.0.0.1", {"203.0.113.9"}, proxies).proxies, 1u);
+  EXPECT_EQ(sender_of("10.0.0.1", {"203.0.113.9", "10.0.0.2"}, proxies).proxies, 2u);
 }
 
 }  // namespace

@@ -127,5 +127,43 @@ TEST(ServeOptions, NameTheSettingThatCannotBeUsed) {
   EXPECT_THAT(check(options).error().message, HasSubstr("--lease_s is -1"));
 }
 
+TEST(ServeOptions, TheNetworkIsServedWithAuthenticationOrWhenThatIsMeantOnly) {
+  const TempFolder folder;
+  ServeOptions options;
+  options.data = folder.path();
+  for (auto* endpoint : {&options.listen, &options.grpc}) {
+    *endpoint = {"0.0.0.0", 80};
+    ASSERT_FALSE(check(options));
+    EXPECT_THAT(
+        check(options).error().message,
+        testing::AllOf(HasSubstr("0.0.0.0:80"), HasSubstr("--api_keys"), HasSubstr("--insecure")));
+    options.insecure = true;
+    EXPECT_TRUE(check(options));
+    options.insecure = false;
+    options.api_keys = "keys";
+    EXPECT_TRUE(check(options));
+    options.api_keys.clear();
+    *endpoint = {"::1", 80};
+  }
+  EXPECT_TRUE(check(options));
+}
+
+TEST(ServeOptions, TokensAreCheckedForIssuerAndAudience) {
+  const TempFolder folder;
+  ServeOptions options;
+  options.data = folder.path();
+  options.oidc_jwks_file = "keys.json";
+  EXPECT_THAT(check(options).error().message, HasSubstr("--oidc_issuer"));
+  options.oidc_issuer = "https://login.test";
+  EXPECT_THAT(check(options).error().message, HasSubstr("--oidc_audience"));
+  options.oidc_audience = "citymesh";
+  EXPECT_TRUE(check(options));
+  options.insecure = true;
+  EXPECT_THAT(check(options).error().message, HasSubstr("--insecure"));
+  options.insecure = false;
+  options.oidc_jwks_file.clear();
+  EXPECT_THAT(check(options).error().message, HasSubstr("--oidc_jwks_file"));
+}
+
 }  // namespace
 }  // namespace citymesh
