@@ -77,8 +77,9 @@ class Client:
         return Job(self._transport, job_id)
 
     def jobs(self, **filters: Any) -> Iterator[JobStatus]:
-        """The states of all jobs, newest first; filters as in `/jobs?status=running&processID=heal`."""
-        query: Optional[str] = urlencode({**filters, "limit": PAGE_LENGTH})
+        """The states of all jobs, newest first; filters as in `/jobs?status=running&processID=heal`, several values as a list."""
+        listed = {name: ",".join(map(str, value)) if isinstance(value, (list, tuple)) else value for name, value in filters.items()}
+        query: Optional[str] = urlencode({**listed, "limit": PAGE_LENGTH})
         while query is not None:
             page = self._transport.json("GET", f"/jobs?{query}")
             yield from map(JobStatus.of, page["jobs"])

@@ -227,7 +227,7 @@ def run(server, client, arguments):
         try:
             jobs = submit_all(client, arguments, seen)
             submitted_s = time.monotonic() - started
-            while any(True for state in ("accepted", "running") for _ in client.jobs(status=state)):
+            while any(True for _ in client.jobs(status=["accepted", "running"])):
                 note_successes(client, seen)
                 time.sleep(0.5)
         except CitymeshError as error:
