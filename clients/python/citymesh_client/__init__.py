@@ -2,7 +2,7 @@
 
     from citymesh_client import Client
 
-    Client("http://127.0.0.1:8080").export([13.400, 52.490, 13.420, 52.510], to="out/mitte", formats=["obj"])
+    Client("http://127.0.0.1:8080").export([13.400, 52.495, 13.405, 52.500], to="out/mitte", formats=["obj"])
 """
 from .client import Client, parse_bbox
 from .errors import (CitymeshError, Conflict, DownloadFailed, Forbidden, HttpError, InvalidRequest, JobDismissed, JobFailed, NotFound,
