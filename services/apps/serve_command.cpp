@@ -67,6 +67,10 @@ RestOptions rest_options(const ServeOptions& options, const Access& access) {
   rest.max_body_bytes = options.max_body_bytes;
   rest.max_connections = options.max_connections;
   rest.sync_wait_s = options.sync_wait_s;
+  rest.idle_timeout_s = options.idle_timeout_s;
+  rest.header_timeout_s = options.header_timeout_s;
+  rest.body_timeout_s = options.body_timeout_s;
+  rest.tls = {options.tls_certificate, options.tls_key};
   rest.access = &access;
   return rest;
 }
@@ -76,6 +80,8 @@ RpcOptions rpc_options(const ServeOptions& options, const Access& access) {
           .port = options.grpc.port,
           .max_message_bytes = static_cast<int>(options.max_body_bytes),
           .max_watches = options.max_watches,
+          .tls_certificate = options.tls_certificate,
+          .tls_key = options.tls_key,
           .access = &access};
 }
 
@@ -92,14 +98,16 @@ std::jthread start_repeating(std::chrono::seconds pause, std::function<void()> w
 }
 
 /// Keys and certificates change while the service runs.
-std::jthread start_reading_access(Access& access, Log& log) {
+std::jthread start_reading_access(Access& access, RestServer& rest, Log& log) {
   constexpr auto kPause = std::chrono::seconds(5);
-  return start_repeating(kPause, [&access, &log, told = std::string()]() mutable {
+  return start_repeating(kPause, [&access, &rest, &log, told = std::string()]() mutable {
     const auto changed = access.reload();
+    const auto tls = rest.reload_tls();
     if (changed && *changed) log.info("access_read", {{"message", "keys have changed"}});
-    const auto problem = changed ? std::string() : changed.error().message;
+    const auto problem = !changed ? changed.error().message : !tls ? tls.error().message : "";
     if (!problem.empty() && problem != told)
-      log.error("access_not_read", {{"message", problem + "; the keys read before stay in force"}});
+      log.error("access_not_read",
+                {{"message", problem + "; what was read before stays in force"}});
     told = problem;
   });
 }
@@ -122,7 +130,8 @@ std::jthread start_sweeping(EmbeddedStore& store, ResultStore& results, const Se
 }
 
 void announce(Log& log, const ServeOptions& options, const Endpoint& rest, const Endpoint& rpc) {
-  const auto url = "http://" + to_string(rest);
+  const bool tls = !options.tls_certificate.empty();
+  const auto url = (tls ? "https://" : "http://") + to_string(rest);
   log.info("listening", {{"rest", url},
                          {"grpc", to_string(rpc)},
                          {"public_url", options.public_url},
@@ -131,10 +140,13 @@ void announce(Log& log, const ServeOptions& options, const Endpoint& rest, const
                          {"workers", options.workers},
                          {"version", version()}});
   for (const auto& endpoint : {rest, rpc})
-    if (!is_loopback(endpoint) && options.insecure)
-      log.warning("open_to_the_network",
-                  {{"address", to_string(endpoint)},
-                   {"message", "anyone who reaches this address may submit and read jobs"}});
+    if (!is_loopback(endpoint) && (options.insecure || !tls))
+      log.warning(
+          "open_to_the_network",
+          {{"address", to_string(endpoint)},
+           {"message", options.insecure
+                           ? "anyone who reaches this address may submit and read jobs"
+                           : "without TLS here or in a proxy keys travel for all to read"}});
   fmt::print(stderr, "citymesh {} serves {}\n  REST  {}/\n  gRPC  {}\n", version(),
              options.data.string(), url, to_string(rpc));
 }
@@ -204,7 +216,7 @@ Result<void> serve(const ServeOptions& options) {
   if (!rpc_port) return rpc_port.error();
   workers.start();
   const auto sweeper = start_sweeping(**store, **results, options, log);
-  const auto reader = start_reading_access(**access, log);
+  const auto reader = start_reading_access(**access, rest, log);
   announce(log, options, {options.listen.host, *rest_port}, {options.grpc.host, *rpc_port});
 
   stop.wait();

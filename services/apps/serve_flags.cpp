@@ -92,6 +92,10 @@ void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> r
       "claim with the roles of a token, or the path to it, for example realm_access.roles");
   add("--oidc_role_prefix", options.oidc_role_prefix,
       "what the names of our roles begin with in that claim");
+  add("--tls_certificate", options.tls_certificate,
+      "PEM file with the certificate of REST and gRPC and those that issued it")
+      ->type_name("FILE");
+  add("--tls_key", options.tls_key, "PEM file with the key of the certificate")->type_name("FILE");
   add("--trusted_proxies", options.trusted_proxies,
       "networks by comma whose Forwarded and X-Forwarded headers are believed");
   command.add_flag("--insecure", options.insecure,
@@ -112,6 +116,10 @@ void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> r
       "0: no limit of its own");
   add("--max_body_bytes", options.max_body_bytes, "size of a request");
   add("--max_connections", options.max_connections, "REST connections at the same time");
+  add("--idle_timeout_s", options.idle_timeout_s,
+      "a REST connection without a request is closed after so long");
+  add("--header_timeout_s", options.header_timeout_s, "for the header of a request to come");
+  add("--body_timeout_s", options.body_timeout_s, "for the body of a request to come");
   add("--sync_wait_s", options.sync_wait_s,
       "longest wait of a synchronous REST execution, then a job is the answer");
   add("--max_watches", options.max_watches, "gRPC watch streams at the same time");

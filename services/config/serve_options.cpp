@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kLongestLease_s = 3600;
 constexpr double kLongestSyncWait_s = 3600;
+constexpr double kLongestTimeout_s = 3600;
 constexpr unsigned kMostThreads = 256;
 constexpr std::array<std::string_view, 4> kLogLevels{"debug", "info", "warning", "error"};
 
@@ -41,6 +42,9 @@ Result<void> check_access(const ServeOptions& options) {
   }
   if (tokens && options.oidc_role_claim.empty())
     return wrong("--oidc_role_claim", "empty", "the name of a claim, for example roles");
+  if (options.tls_certificate.empty() != options.tls_key.empty())
+    return fail(ErrorCode::InvalidArgument,
+                "one of --tls_certificate and --tls_key is missing; expected both or none");
   if (knows_clients(options) && options.insecure)
     return fail(ErrorCode::InvalidArgument,
                 "--insecure is given, expected not together with --api_keys or --oidc_jwks_file");
@@ -121,6 +125,11 @@ Result<void> check(const ServeOptions& options) {
   if (!(options.sync_wait_s >= 0 && options.sync_wait_s <= kLongestSyncWait_s))
     return wrong("--sync_wait_s", options.sync_wait_s,
                  fmt::format("0 (every execution is a job) to {}", kLongestSyncWait_s));
+  for (const auto& [name, timeout_s] : {std::pair("--idle_timeout_s", options.idle_timeout_s),
+                                        std::pair("--header_timeout_s", options.header_timeout_s),
+                                        std::pair("--body_timeout_s", options.body_timeout_s)})
+    if (!(timeout_s >= 0.1 && timeout_s <= kLongestTimeout_s))
+      return wrong(name, timeout_s, fmt::format("0.1 to {}", kLongestTimeout_s));
   if (options.max_watches < 1 || options.max_watches > 4096)
     return wrong("--max_watches", options.max_watches, "1 to 4096");
   if (std::ranges::find(kLogLevels, options.log_level) == kLogLevels.end())

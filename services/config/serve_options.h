@@ -35,6 +35,8 @@ struct ServeOptions {
   std::string oidc_audience{};             ///< `aud` of tokens
   std::string oidc_role_claim = "roles";
   std::string oidc_role_prefix = "citymesh:";  ///< of the names in that claim that count
+  std::filesystem::path tls_certificate{};     ///< PEM, of REST and gRPC; empty: no TLS
+  std::filesystem::path tls_key{};
   bool insecure = false;          ///< everybody on the network may do everything, and is meant to
   std::string trusted_proxies{};  ///< networks whose forwarded headers are believed
 
@@ -52,6 +54,9 @@ struct ServeOptions {
   std::uint32_t max_client_jobs = 100;     ///< the same of each client; 0: no limit of its own
   std::uint64_t max_body_bytes = 1 << 20;  ///< of a request, REST and gRPC
   std::uint32_t max_connections = 1024;    ///< REST
+  double idle_timeout_s = 60;              ///< of a REST connection between two requests
+  double header_timeout_s = 10;            ///< for a request's header to come
+  double body_timeout_s = 60;              ///< for a request's body to come
   double sync_wait_s = 30;  ///< longest wait of a synchronous execution; 0: every one is a job
   std::uint32_t max_watches = 256;  ///< gRPC streams open at the same time
 

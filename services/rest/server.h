@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -11,6 +12,12 @@ namespace citymesh {
 class Access;
 class JobManager;
 class Metrics;
+
+/// PEM files. Empty: no TLS.
+struct TlsFiles {
+  std::filesystem::path certificate{};  ///< with those that issued it behind it
+  std::filesystem::path key{};
+};
 
 struct RestOptions {
   std::string host = "127.0.0.1";  ///< address to listen on
@@ -23,11 +30,13 @@ struct RestOptions {
   double sync_wait_s = 30;  ///< longest wait of a synchronous execution, then a job is the answer
   unsigned io_threads = 2;
   unsigned handler_threads = 4;  ///< store and result files are read here, never on an I/O thread
-  double header_timeout_s = 30;  ///< until the next request's header is complete, idling included
+  double idle_timeout_s = 60;    ///< of an open connection between two requests
+  double header_timeout_s = 10;  ///< from a header's first byte to its last; of TLS's greeting
   double body_timeout_s = 60;    ///< until a request's body is complete
   double write_timeout_s = 60;   ///< without any progress of a response
   double drain_timeout_s = 5;    ///< responses under way get this long when stopping
   std::string cors_allow_origin = "*";  ///< empty: no CORS headers
+  TlsFiles tls{};
   const Access* access = nullptr;  ///< who may do what, outlives the server; null: everybody all
 };
 
@@ -42,12 +51,16 @@ class RestServer {
   RestServer& operator=(const RestServer&) = delete;
 
   /// Listens and serves on threads of its own; returns the port. Errors: InvalidArgument for a host
-  /// that is no address, Unavailable when the port is taken.
+  /// that is no address and for TLS files that cannot be used, Unavailable when the port is taken.
   Result<std::uint16_t> start();
 
   /// Accepts nothing new, lets responses under way finish within `drain_timeout_s`, then closes.
   /// May be called twice.
   void stop();
+
+  /// Reads the TLS files again if they have changed, for connections to come; from one thread at a
+  /// time. After an error those read before stay in use.
+  Result<void> reload_tls();
 
  private:
   struct Impl;

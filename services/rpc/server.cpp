@@ -4,11 +4,17 @@
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/grpcpp.h>
 #include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/security/server_credentials.h>
+#include <grpcpp/security/tls_certificate_provider.h>
+#include <grpcpp/security/tls_credentials_options.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <map>
+#include <memory>
+#include <system_error>
 #include <utility>
 
 #include "citymesh/v1/jobs.grpc.pb.h"
@@ -252,6 +258,17 @@ class JobsService final : public v1::Jobs::Service {
   std::atomic<bool> stopping_ = false;
 };
 
+std::shared_ptr<grpc::ServerCredentials> credentials(const RpcOptions& options) {
+  namespace tls = grpc::experimental;  // the only one that takes renewed certificates
+  constexpr unsigned kLookAgain_s = 5;
+  if (options.tls_certificate.empty()) return grpc::InsecureServerCredentials();
+  tls::TlsServerCredentialsOptions secure(std::make_shared<tls::FileWatcherCertificateProvider>(
+      options.tls_key.string(), options.tls_certificate.string(), kLookAgain_s));
+  secure.watch_identity_key_cert_pairs();
+  secure.set_cert_request_type(GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE);
+  return tls::TlsServerCredentials(secure);
+}
+
 std::string address(const std::string& host, std::uint16_t port) {
   const auto ipv6 = host.find(':') != std::string::npos;
   return ipv6 ? fmt::format("[{}]:{}", host, port) : fmt::format("{}:{}", host, port);
@@ -281,7 +298,11 @@ Result<std::uint16_t> RpcServer::start() {
   int port = 0;
   grpc::ServerBuilder builder;
   const auto where = address(options.host, options.port);
-  builder.AddListeningPort(where, grpc::InsecureServerCredentials(), &port);
+  for (const auto& file : {options.tls_certificate, options.tls_key})
+    if (std::error_code ignored; !file.empty() && !std::filesystem::is_regular_file(file, ignored))
+      return fail(ErrorCode::InvalidArgument,
+                  fmt::format("TLS file '{}' does not exist, expected PEM", file.string()));
+  builder.AddListeningPort(where, credentials(options), &port);
   builder.RegisterService(&impl_->service);
   builder.SetMaxReceiveMessageSize(options.max_message_bytes);
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);  // a taken port is an error

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -17,7 +18,9 @@ struct RpcOptions {
   std::uint16_t port = 50051;  ///< 0: any free port, which start() returns
   int max_message_bytes = 1 << 20;
   std::uint32_t max_watches = 256;  ///< Watch streams at the same time; more: RESOURCE_EXHAUSTED
-  const Access* access = nullptr;   ///< who may do what, outlives the server; null: everybody all
+  std::filesystem::path tls_certificate{};  ///< PEM, read again when it changes; empty: no TLS
+  std::filesystem::path tls_key{};
+  const Access* access = nullptr;  ///< who may do what, outlives the server; null: everybody all
 };
 
 /// The service Jobs of proto/citymesh/v1 with health and reflection. Translates to and from
@@ -30,7 +33,8 @@ class RpcServer {
   RpcServer(const RpcServer&) = delete;
   RpcServer& operator=(const RpcServer&) = delete;
 
-  /// Serves on threads of its own; returns the port. Errors: Unavailable when it cannot listen.
+  /// Serves on threads of its own; returns the port. Errors: Unavailable when it cannot listen,
+  /// InvalidArgument for TLS files that are not there.
   Result<std::uint16_t> start();
 
   /// Ends open streams and returns when all calls have ended. May be called twice.

@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <openssl/ssl.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -26,7 +27,9 @@ class Connection {
     std::string body{};
   };
 
-  explicit Connection(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+  /// With a context it speaks TLS; see greeted().
+  explicit Connection(std::uint16_t port, SSL_CTX* tls = nullptr)
+      : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
     const timeval limit{20, 0};
     ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
     ::setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
@@ -35,15 +38,27 @@ class Connection {
     address.sin_port = htons(port);
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     EXPECT_EQ(::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    if (tls == nullptr) return;
+    secure_ = SSL_new(tls);
+    SSL_set_fd(secure_, socket_);
+    greeted_ = SSL_connect(secure_) == 1;
   }
-  ~Connection() { ::close(socket_); }
+  ~Connection() {
+    SSL_free(secure_);
+    ::close(socket_);
+  }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
+
+  bool greeted() const { return greeted_; }
+  SSL* secure() { return secure_; }
 
   /// False when the server has closed the connection.
   bool send(std::string_view bytes) {
     while (!bytes.empty()) {
-      const auto sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+      const auto sent = secure_ != nullptr
+                            ? SSL_write(secure_, bytes.data(), static_cast<int>(bytes.size()))
+                            : ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
       if (sent <= 0) return false;
       bytes.remove_prefix(static_cast<std::size_t>(sent));
     }
@@ -51,6 +66,7 @@ class Connection {
   }
   /// Says nothing more and reads nothing more.
   void leave() {
+    if (secure_ != nullptr) SSL_shutdown(secure_);
     ::close(socket_);
     socket_ = -1;
   }
@@ -104,13 +120,16 @@ class Connection {
  private:
   bool receive() {
     char bytes[65536];
-    const auto received = ::recv(socket_, bytes, sizeof bytes, 0);
+    const auto received = secure_ != nullptr ? SSL_read(secure_, bytes, sizeof bytes)
+                                             : ::recv(socket_, bytes, sizeof bytes, 0);
     if (received <= 0) return false;
     buffer_.append(bytes, static_cast<std::size_t>(received));
     return true;
   }
 
   int socket_;
+  SSL* secure_ = nullptr;
+  bool greeted_ = false;
   std::string buffer_;
 };
 

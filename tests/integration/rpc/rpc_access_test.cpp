@@ -14,6 +14,7 @@
 #include "services/stores/folder_results.h"
 #include "services/telemetry/metrics.h"
 #include "tests/support/temp_folder.h"
+#include "tests/unit/access/certificate.h"
 
 namespace citymesh {
 namespace {
@@ -152,6 +153,48 @@ TEST_F(RpcAccessTest, WhoOnlyReadsNeitherSubmitsNorDismisses) {
   EXPECT_EQ(submit(&reader_).first, StatusCode::PERMISSION_DENIED);
   EXPECT_EQ(dismiss(&reader_, id), StatusCode::PERMISSION_DENIED);
   EXPECT_EQ(get(&reader_, id), StatusCode::OK);
+}
+
+TEST(RpcOverTls, IsSpokenWithTheCertificateAndNotWithout) {
+  const TempFolder folder;
+  const auto certificate = make_certificate();
+  write_certificate(folder.path(), certificate);
+  const auto store = *EmbeddedStore::open(folder / "jobs.sqlite");
+  const auto results = *FolderResultStore::open(folder / "results");
+  Metrics metrics;
+  JobManager jobs(*store, *store, *results);
+  RpcServer server(
+      jobs, metrics,
+      {.port = 0, .tls_certificate = folder / "certificate.pem", .tls_key = folder / "key.pem"});
+  const auto port = server.start();
+  ASSERT_TRUE(port) << port.error().message;
+
+  const auto ask = [&](const std::shared_ptr<grpc::ChannelCredentials>& credentials) {
+    const auto channel = grpc::CreateChannel("localhost:" + std::to_string(*port), credentials);
+    const auto stub = v1::Jobs::NewStub(channel);
+    grpc::ClientContext context;
+    v1::ProcessesReply processes;
+    return stub->Processes(&context, {}, &processes).error_code();
+  };
+  EXPECT_EQ(ask(grpc::SslCredentials({.pem_root_certs = certificate.certificate_pem})),
+            StatusCode::OK);
+  EXPECT_EQ(ask(grpc::SslCredentials({.pem_root_certs = make_certificate().certificate_pem})),
+            StatusCode::UNAVAILABLE);
+  EXPECT_EQ(ask(grpc::InsecureChannelCredentials()), StatusCode::UNAVAILABLE);
+}
+
+TEST(RpcOverTls, FilesThatAreNotThereAreNamed) {
+  const TempFolder folder;
+  const auto store = *EmbeddedStore::open(folder / "jobs.sqlite");
+  const auto results = *FolderResultStore::open(folder / "results");
+  Metrics metrics;
+  JobManager jobs(*store, *store, *results);
+  RpcServer server(
+      jobs, metrics,
+      {.port = 0, .tls_certificate = folder / "certificate.pem", .tls_key = folder / "key.pem"});
+  const auto port = server.start();
+  ASSERT_FALSE(port);
+  EXPECT_THAT(port.error().message, HasSubstr("certificate.pem"));
 }
 
 TEST(CredentialsTest, ThePeerIsTheAddressUnlessATrustedProxySaysOtherwise) {
