@@ -10,7 +10,7 @@
 #include "core/citymodel/building.h"
 #include "core/citymodel/mesh.h"
 #include "core/citymodel/report.h"
-#include "core/pipeline/inputs.h"
+#include "core/processes/inputs.h"
 #include "core/write/write.h"
 
 namespace citymesh {

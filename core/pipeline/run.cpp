@@ -7,7 +7,6 @@
 
 #include "core/base/parallel.h"
 #include "core/base/version.h"
-#include "core/pipeline/inputs.h"
 #include "core/pipeline/manifest.h"
 #include "core/pipeline/names.h"
 #include "core/pipeline/pipeline.h"
@@ -15,6 +14,8 @@
 #include "core/pipeline/source_bodies.h"
 #include "core/pipeline/totals.h"
 #include "core/pipeline/validate_building.h"
+#include "core/processes/inputs.h"
+#include "core/processes/processes.h"
 #include "core/write/write.h"
 
 namespace citymesh {

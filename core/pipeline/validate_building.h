@@ -5,8 +5,8 @@
 
 #include "core/base/run_context.h"
 #include "core/citymodel/report.h"
-#include "core/pipeline/inputs.h"
 #include "core/pipeline/process_building.h"
+#include "core/processes/inputs.h"
 #include "core/validate/neighbours.h"
 
 namespace citymesh {

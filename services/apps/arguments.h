@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 
 namespace citymesh {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/base/version.h"
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 #include "core/write/write.h"
 #include "services/apps/commands.h"
 #include "services/apps/serve_flags.h"

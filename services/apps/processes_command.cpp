@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 #include "services/apps/commands.h"
 
 namespace citymesh {

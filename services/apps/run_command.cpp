@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 #include "core/source/source.h"
 #include "services/apps/commands.h"
 #include "services/apps/input.h"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 #include "core/write/write.h"
 #include "services/jobs/retention.h"
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 #include "services/jobs/retention.h"
 #include "services/rest/documents.h"
 #include "services/rest/problem.h"

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "core/base/result.h"
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 #include "services/jobs/job.h"
 
 namespace citymesh {

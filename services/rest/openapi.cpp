@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/version.h"
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 #include "services/rest/links.h"
 #include "services/rest/processes.h"
 

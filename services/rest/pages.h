@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 #include "services/jobs/job.h"
 #include "services/rest/message.h"
 #include "services/rest/problem.h"

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 
 namespace citymesh {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 #include "core/write/write.h"
 #include "services/rest/documents.h"
 #include "services/rest/links.h"

@@ -2,7 +2,7 @@
 
 #include "citymesh/v1/jobs.pb.h"
 #include "core/base/result.h"
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 #include "services/jobs/job.h"
 
 namespace citymesh {

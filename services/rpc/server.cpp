@@ -18,7 +18,7 @@
 #include <utility>
 
 #include "citymesh/v1/jobs.grpc.pb.h"
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 #include "services/jobs/job_manager.h"
 #include "services/rpc/caller.h"
 #include "services/rpc/messages.h"

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "core/pipeline/inputs.h"
-#include "core/pipeline/pipeline.h"
+#include "core/processes/inputs.h"
+#include "core/processes/processes.h"
 #include "services/rest/execute.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "citymesh/v1/jobs.grpc.pb.h"
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 #include "services/jobs/job_manager.h"
 #include "services/jobs/retention.h"
 #include "services/rpc/server.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/citymodel/issue.h"
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 
 namespace citymesh {
 namespace {

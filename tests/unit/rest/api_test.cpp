@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 #include "tests/unit/rest/rest_api.h"
 
 namespace citymesh {

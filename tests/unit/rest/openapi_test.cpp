@@ -9,7 +9,7 @@
 #include <regex>
 #include <set>
 
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 #include "tests/unit/rest/rest_api.h"
 
 namespace citymesh {

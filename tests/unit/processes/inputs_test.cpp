@@ -1,11 +1,11 @@
-#include "core/pipeline/inputs.h"
+#include "core/processes/inputs.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 
 namespace citymesh {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/pipeline/inputs.h"
+#include "core/processes/inputs.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 
 namespace citymesh {
 namespace {

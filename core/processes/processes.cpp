@@ -1,7 +1,7 @@
 #include <array>
 #include <vector>
 
-#include "core/pipeline/pipeline.h"
+#include "core/processes/processes.h"
 #include "core/write/write.h"
 
 namespace citymesh {
