@@ -26,6 +26,7 @@
 #include "services/stores/state_folder.h"
 #include "services/telemetry/log.h"
 #include "services/telemetry/metrics.h"
+#include "services/worker/limited_source.h"
 #include "services/worker/worker.h"
 
 namespace citymesh {
@@ -46,7 +47,8 @@ WorkerOptions worker_options(const ServeOptions& options) {
   return {.workers = options.workers,
           .threads_per_job = std::max(1u, threads / options.workers),
           .lease_ms = milliseconds(options.lease_s),
-          .job_timeout_ms = milliseconds(options.job_timeout_s)};
+          .job_timeout_ms = milliseconds(options.job_timeout_s),
+          .max_job_bytes = options.max_job_bytes};
 }
 
 AccessOptions access_options(const ServeOptions& options) {
@@ -66,6 +68,7 @@ RestOptions rest_options(const ServeOptions& options, const Access& access) {
   rest.public_url = options.public_url;
   rest.max_body_bytes = options.max_body_bytes;
   rest.max_connections = options.max_connections;
+  rest.max_client_connections = options.max_client_connections;
   rest.sync_wait_s = options.sync_wait_s;
   rest.idle_timeout_s = options.idle_timeout_s;
   rest.header_timeout_s = options.header_timeout_s;
@@ -151,6 +154,18 @@ void announce(Log& log, const ServeOptions& options, const Endpoint& rest, const
              options.data.string(), url, to_string(rpc));
 }
 
+/// No job takes more than it may.
+SourceFactory within_limits(SourceFactory open, const ServeOptions& options) {
+  const JobLimits limits{.area_km2 = options.max_job_area_km2,
+                         .buildings = options.max_job_buildings,
+                         .points = options.max_job_points};
+  return [open = std::move(open), limits]() -> Result<std::unique_ptr<CitySource>> {
+    auto source = open();
+    if (!source) return source.error();
+    return limited(*std::move(source), limits);
+  };
+}
+
 /// What jobs read: a folder through its catalogue, which is brought up to date now rather than in
 /// the first job; a single file as it is.
 Result<SourceFactory> open_data(const ServeOptions& options, Log& log, const StopOnSignal& stop) {
@@ -158,7 +173,7 @@ Result<SourceFactory> open_data(const ServeOptions& options, Log& log, const Sto
   if (!std::filesystem::is_directory(options.data, ignored)) {
     SourceFactory file = [data = options.data] { return open_files({data}, {}); };
     if (auto opened = file(); !opened) return opened.error();
-    return file;
+    return within_limits(std::move(file), options);
   }
   CatalogueOptions catalogue{.data = options.data, .state = default_catalogue(options.data)};
   if (!has_catalogue(catalogue.state)) catalogue.state = options.state / "catalogue";
@@ -175,7 +190,7 @@ Result<SourceFactory> open_data(const ServeOptions& options, Log& log, const Sto
                        {"buildings", report->buildings},
                        {"new_or_changed", report->indexed},
                        {"removed", report->removed}});
-  return SourceFactory([catalogue] { return open_catalogued(catalogue); });
+  return within_limits([catalogue] { return open_catalogued(catalogue); }, options);
 }
 
 Result<void> serve(const ServeOptions& options) {

@@ -105,6 +105,10 @@ void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> r
   add("--lease_s", options.lease_s, "a worker not heard of for so long counts as dead");
   add("--max_attempts", options.max_attempts, "deaths of a worker after which its job is failed");
   add("--job_timeout_s", options.job_timeout_s, "a job that runs longer is failed; 0: no limit");
+  add("--max_job_area_km2", options.max_job_area_km2, "area of a job's box; 0: no limit");
+  add("--max_job_buildings", options.max_job_buildings, "buildings of a job; 0: no limit");
+  add("--max_job_points", options.max_job_points, "points of a job's buildings; 0: no limit");
+  add("--max_job_bytes", options.max_job_bytes, "size of a job's results; 0: no limit");
   add("--keep_results_s", options.keep_results_s,
       "results of an ended job are kept for so long; 0: for ever");
   add("--keep_jobs_s", options.keep_jobs_s, "an ended job is remembered for so long; 0: for ever");
@@ -116,6 +120,9 @@ void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> r
       "0: no limit of its own");
   add("--max_body_bytes", options.max_body_bytes, "size of a request");
   add("--max_connections", options.max_connections, "REST connections at the same time");
+  add("--max_client_connections", options.max_client_connections,
+      "the same from one address; this machine and trusted proxies have no such limit; 0: none "
+      "has");
   add("--idle_timeout_s", options.idle_timeout_s,
       "a REST connection without a request is closed after so long");
   add("--header_timeout_s", options.header_timeout_s, "for the header of a request to come");

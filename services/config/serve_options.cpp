@@ -112,6 +112,8 @@ Result<void> check(const ServeOptions& options) {
   if (options.max_attempts < 1) return wrong("--max_attempts", options.max_attempts, "1 or more");
   if (!(options.job_timeout_s >= 0) || !std::isfinite(options.job_timeout_s))
     return wrong("--job_timeout_s", options.job_timeout_s, "0 (no limit) or more");
+  if (!(options.max_job_area_km2 >= 0) || !std::isfinite(options.max_job_area_km2))
+    return wrong("--max_job_area_km2", options.max_job_area_km2, "0 (no limit) or more");
   for (const auto& [name, kept_s] : {std::pair("--keep_results_s", options.keep_results_s),
                                      std::pair("--keep_jobs_s", options.keep_jobs_s)})
     if (!(kept_s >= 0) || !std::isfinite(kept_s))

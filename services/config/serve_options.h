@@ -46,17 +46,24 @@ struct ServeOptions {
   std::uint32_t max_attempts = 3;  ///< deaths of a worker after which its job is failed
   double job_timeout_s = 0;        ///< a job that runs longer is failed; 0: no limit
 
+  // What one job may take and make; 0: no limit.
+  double max_job_area_km2 = 1000;              ///< of its box
+  std::uint64_t max_job_buildings = 200'000;   ///< selected
+  std::uint64_t max_job_points = 100'000'000;  ///< of its buildings
+  std::uint64_t max_job_bytes = 16ull << 30;   ///< of its results
+
   double keep_results_s = 7 * 86400;   ///< after a job's end; 0: for ever
   double keep_jobs_s = 30 * 86400;     ///< the record of an ended job; 0: for ever
   std::uint64_t max_result_bytes = 0;  ///< of all jobs; the oldest results go first; 0: no limit
 
-  std::uint32_t max_open_jobs = 1000;      ///< accepted and running; more are refused
-  std::uint32_t max_client_jobs = 100;     ///< the same of each client; 0: no limit of its own
-  std::uint64_t max_body_bytes = 1 << 20;  ///< of a request, REST and gRPC
-  std::uint32_t max_connections = 1024;    ///< REST
-  double idle_timeout_s = 60;              ///< of a REST connection between two requests
-  double header_timeout_s = 10;            ///< for a request's header to come
-  double body_timeout_s = 60;              ///< for a request's body to come
+  std::uint32_t max_open_jobs = 1000;          ///< accepted and running; more are refused
+  std::uint32_t max_client_jobs = 100;         ///< the same of each client; 0: no limit of its own
+  std::uint64_t max_body_bytes = 1 << 20;      ///< of a request, REST and gRPC
+  std::uint32_t max_connections = 1024;        ///< REST
+  std::uint32_t max_client_connections = 256;  ///< the same of one address; 0: no limit of its own
+  double idle_timeout_s = 60;                  ///< of a REST connection between two requests
+  double header_timeout_s = 10;                ///< for a request's header to come
+  double body_timeout_s = 60;                  ///< for a request's body to come
   double sync_wait_s = 30;  ///< longest wait of a synchronous execution; 0: every one is a job
   std::uint32_t max_watches = 256;  ///< gRPC streams open at the same time
 

@@ -20,6 +20,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -41,10 +42,13 @@ std::chrono::milliseconds milliseconds(double seconds) {
   return std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1000.0));
 }
 
+const Access& access_of(const RestOptions& options) {
+  return options.access != nullptr ? *options.access : Access::for_everybody();
+}
+
 ApiOptions api_options(const RestOptions& options) {
   return {options.public_url, options.cors_allow_origin, options.max_inline_bytes,
-          options.sync_wait_s,
-          options.access != nullptr ? options.access : &Access::for_everybody()};
+          options.sync_wait_s, &access_of(options)};
 }
 
 }  // namespace
@@ -52,6 +56,7 @@ ApiOptions api_options(const RestOptions& options) {
 struct RestServer::Impl {
   Impl(JobManager& jobs, Metrics& metrics, RestOptions given)
       : options(std::move(given)),
+        access(access_of(options)),
         api(jobs, metrics, api_options(options)),
         handlers(std::max(1U, options.handler_threads)),
         shared{options, jobs, api, io, handlers, stopping} {}
@@ -63,10 +68,12 @@ struct RestServer::Impl {
  private:
   awaitable<void> accept_all();
   void serve(int socket);
+  std::string lack_of_room(const std::string& peer) const;
   void leave(const std::shared_ptr<Session>& session);
   void close_sessions(bool idle_only);
 
   const RestOptions options;
+  const Access& access;
   const Api api;
   asio::io_context io;
   asio::thread_pool handlers;
@@ -138,20 +145,35 @@ void RestServer::Impl::stop() {
   handlers.join();
 }
 
+/// Why one more connection from there, counted already, is not served; empty: it is.
+std::string RestServer::Impl::lack_of_room(const std::string& peer) const {
+  if (sessions.size() > options.max_connections)
+    return fmt::format("{} connections are open, more are not served; try again later",
+                       options.max_connections);
+  const auto most = options.max_client_connections;
+  if (most == 0 || sessions.size() <= most || is_loopback_address(peer) ||
+      access.trusted_proxies().contains(peer))
+    return {};
+  const auto own = std::ranges::count(sessions, peer, [](const auto& s) { return s->peer(); });
+  if (own <= most) return {};
+  return fmt::format("{} connections from {} are open, more are not served; try again later", most,
+                     peer);
+}
+
 void RestServer::Impl::serve(int socket) {
-  bool room = false;
+  std::string why_not;
   std::shared_ptr<Session> session;
   {
     const std::scoped_lock lock(mutex);
     session = std::make_shared<Session>(shared, socket, tls);
     sessions.insert(session);
-    room = sessions.size() <= options.max_connections;
+    why_not = lack_of_room(session->peer());
   }
   auto ended = [this, session] { leave(session); };
-  if (room)
+  if (why_not.empty())
     session->serve(std::move(ended));
   else
-    session->refuse(std::move(ended));
+    session->refuse(std::move(why_not), std::move(ended));
 }
 
 void RestServer::Impl::leave(const std::shared_ptr<Session>& session) {

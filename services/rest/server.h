@@ -25,7 +25,9 @@ struct RestOptions {
   std::string public_url{};        ///< base of all links; empty: http:// and the request's Host
   std::uint64_t max_body_bytes = 1 << 20;
   std::uint32_t max_header_bytes = 16 << 10;
-  std::uint32_t max_connections = 1024;       ///< more are answered with 503 and closed
+  std::uint32_t max_connections = 1024;  ///< more are answered with 503 and closed
+  /// The same of one address, if that is neither on this machine nor a trusted proxy; 0: no limit.
+  std::uint32_t max_client_connections = 0;
   std::uint64_t max_inline_bytes = 16 << 20;  ///< larger results in a document are given as links
   double sync_wait_s = 30;  ///< longest wait of a synchronous execution, then a job is the answer
   unsigned io_threads = 2;

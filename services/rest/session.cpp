@@ -215,7 +215,7 @@ struct Session::Impl : std::enable_shared_from_this<Session::Impl> {
       : shared(shared_in), peer(address_of(socket)), channel(std::move(socket), std::move(tls)) {}
 
   awaitable<void> serve();
-  awaitable<void> refuse();
+  awaitable<void> refuse(std::string why);
   awaitable<bool> answer_next(beast::flat_buffer& buffer);
   awaitable<std::shared_ptr<Response>> follow(const Follow& follow);
   awaitable<bool> write(const Response& response, bool head, bool keep_alive);
@@ -240,16 +240,12 @@ struct Session::Impl : std::enable_shared_from_this<Session::Impl> {
   bool answered = false;  ///< a request has been read before
 };
 
-awaitable<void> Session::Impl::refuse() {
+awaitable<void> Session::Impl::refuse(std::string why) {
   busy = true;
   channel.expires_after(milliseconds(shared.options.header_timeout_s));
   const bool greeted = co_await channel.say_hello();
   if (!greeted) co_return;
-  const auto response =
-      problem_response(problems::kTooManyConnections,
-                       fmt::format("{} connections are open, more are not served; try again later",
-                                   shared.options.max_connections),
-                       {});
+  const auto response = problem_response(problems::kTooManyConnections, why, {});
   const bool written = co_await write(response, false, false);
   if (written) co_await discard_input();
 }
@@ -440,8 +436,8 @@ void Session::serve(std::function<void()> ended) {
                  [impl = impl_, ended = std::move(ended)](const std::exception_ptr&) { ended(); });
 }
 
-void Session::refuse(std::function<void()> ended) {
-  asio::co_spawn(impl_->channel.get_executor(), impl_->refuse(),
+void Session::refuse(std::string why, std::function<void()> ended) {
+  asio::co_spawn(impl_->channel.get_executor(), impl_->refuse(std::move(why)),
                  [impl = impl_, ended = std::move(ended)](const std::exception_ptr&) { ended(); });
 }
 

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "services/jobs/job_manager.h"
 #include "services/rest/api.h"
@@ -42,8 +43,8 @@ class Session {
 
   /// Serves until either side ends it, then calls `ended`, once.
   void serve(std::function<void()> ended);
-  /// Answers that there is no room for it, whatever it asks, and closes.
-  void refuse(std::function<void()> ended);
+  /// Answers with `why` there is no room for it, whatever it asks, and closes.
+  void refuse(std::string why, std::function<void()> ended);
   /// From any thread; what is under way ends soon. `idle_only`: not while a request is answered.
   void close(bool idle_only);
 

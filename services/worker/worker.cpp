@@ -81,6 +81,12 @@ Result<std::vector<ResultFile>> listed(const std::filesystem::path& folder,
   return results;
 }
 
+std::uint64_t bytes_of(const std::vector<ResultFile>& files) {
+  std::uint64_t bytes = 0;
+  for (const auto& file : files) bytes += file.bytes;
+  return bytes;
+}
+
 }  // namespace
 
 struct WorkerPool::Impl {
@@ -285,6 +291,11 @@ std::string_view WorkerPool::Impl::finish(const Run& run, Result<RunOutcome> out
   if (!outcome) return close(run, JobState::Failed, outcome.error().message, outcome.error(), {});
 
   auto files = listed(folder, outcome->files);
+  if (files && options.max_job_bytes > 0 && bytes_of(*files) > options.max_job_bytes)
+    files = fail(ErrorCode::ResourceExhausted,
+                 fmt::format("the results have {} bytes, at most {} may be of one job; choose a "
+                             "smaller `bbox` or fewer `formats`",
+                             bytes_of(*files), options.max_job_bytes));
   if (!files) return close(run, JobState::Failed, files.error().message, files.error(), {});
   if (auto committed = results.commit(claim.job_id, claim.attempt); !committed)
     return close(run, JobState::Failed, committed.error().message, committed.error(), {});

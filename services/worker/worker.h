@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 
@@ -17,6 +18,7 @@ struct WorkerOptions {
   unsigned threads_per_job = 1;       ///< threads of one job's own work
   TimeMs lease_ms = 30'000;           ///< a worker not heard of for so long counts as dead
   TimeMs job_timeout_ms = 0;          ///< a job that runs longer is failed; 0: no limit
+  std::uint64_t max_job_bytes = 0;    ///< a job whose results are larger is failed; 0: no limit
   TimeMs progress_interval_ms = 200;  ///< least time between two stored progress reports
 };
 

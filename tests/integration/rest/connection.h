@@ -28,7 +28,7 @@ class Connection {
   };
 
   /// With a context it speaks TLS; see greeted().
-  explicit Connection(std::uint16_t port, SSL_CTX* tls = nullptr)
+  explicit Connection(std::uint16_t port, SSL_CTX* tls = nullptr, const char* host = "127.0.0.1")
       : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
     const timeval limit{20, 0};
     ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
@@ -36,7 +36,7 @@ class Connection {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(port);
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    inet_pton(AF_INET, host, &address.sin_addr);
     EXPECT_EQ(::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
     if (tls == nullptr) return;
     secure_ = SSL_new(tls);

@@ -1,14 +1,32 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <ifaddrs.h>
 
 #include <atomic>
 #include <chrono>
 #include <thread>
 
+#include "services/access/networks.h"
 #include "tests/integration/rest/rest_over_socket.h"
 
 namespace citymesh {
 namespace {
+
+/// An IPv4 address of this machine that is not loopback; empty: there is none.
+std::string own_address() {
+  ifaddrs* all = nullptr;
+  if (getifaddrs(&all) != 0) return {};
+  std::string found;
+  for (const auto* entry = all; entry != nullptr && found.empty(); entry = entry->ifa_next) {
+    char text[INET_ADDRSTRLEN] = {};
+    if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET) continue;
+    const auto* address = reinterpret_cast<const sockaddr_in*>(entry->ifa_addr);
+    inet_ntop(AF_INET, &address->sin_addr, text, sizeof text);
+    if (!is_loopback_address(text)) found = text;
+  }
+  freeifaddrs(all);
+  return found;
+}
 
 /// Sends one byte after the other, each well within any limit, until the server has had enough.
 bool drips_for_ever(Connection& connection, char byte) {
@@ -54,6 +72,34 @@ TEST_F(RestOverSocket, AConnectionThatNeverAsksIsClosed) {
   start({.idle_timeout_s = 60, .header_timeout_s = 0.3});
   Connection silent(port_);
   EXPECT_TRUE(silent.is_closed());
+  expect_still_working();
+}
+
+TEST_F(RestOverSocket, ThisMachineMayHaveMoreConnectionsThanOtherAddresses) {
+  start({.max_client_connections = 1});
+  Connection first(port_), second(port_);
+  for (auto* connection : {&first, &second}) {
+    connection->send(request("GET", "/healthz"));
+    EXPECT_EQ(connection->read()->status, 200);
+  }
+}
+
+TEST_F(RestOverSocket, AnAddressHasALimitOfItsOwn) {
+  // The only other address of every machine is one of its own that is not loopback.
+  const auto address = own_address();
+  if (address.empty()) GTEST_SKIP() << "this machine has loopback only";
+  start({.host = "0.0.0.0", .max_client_connections = 1});
+  {
+    Connection first(port_, nullptr, address.c_str());
+    first.send(request("GET", "/healthz"));
+    EXPECT_EQ(first.read()->status, 200);
+    Connection second(port_, nullptr, address.c_str());
+    const auto refused = second.read();
+    ASSERT_TRUE(refused);
+    EXPECT_EQ(refused->status, 503);
+    EXPECT_TRUE(refused->headers.contains("retry-after"));
+    EXPECT_THAT(refused->body, testing::HasSubstr("1 connections from " + address));
+  }
   expect_still_working();
 }
 

@@ -217,6 +217,16 @@ TEST_F(WorkerTest, AJobBeyondItsTimeLimitIsFailed) {
   EXPECT_EQ(job.error->code, ErrorCode::DeadlineExceeded);
 }
 
+TEST_F(WorkerTest, AJobWhoseResultsAreTooLargeIsFailedAndLeavesNoFiles) {
+  work_on([](const RunContext&) -> Result<void> { return {}; }, {.max_job_bytes = 100});
+  const auto job = ended(submitted());
+  EXPECT_EQ(job.state, JobState::Failed);
+  ASSERT_TRUE(job.error);
+  EXPECT_EQ(job.error->code, ErrorCode::ResourceExhausted);
+  EXPECT_THAT(job.error->message, HasSubstr("at most 100 may be of one job"));
+  EXPECT_FALSE(has_files(job.id));
+}
+
 TEST_F(WorkerTest, ShutdownHandsTheJobBackAndTheNextPoolFinishesIt) {
   work_on(until_stopped);
   const auto id = submitted();

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/source/source.h"
+
+namespace citymesh {
+
+/// How much one job may take from a source. 0: no limit.
+struct JobLimits {
+  double area_km2 = 0;  ///< of the box asked for
+  std::uint64_t buildings = 0;
+  std::uint64_t points = 0;  ///< of all buildings read, parts and installations included
+};
+
+/// The source within limits: a selection or a reading that exceeds one ends with ResourceExhausted,
+/// which names the limit and how much it was.
+std::unique_ptr<CitySource> limited(std::unique_ptr<CitySource> source, const JobLimits& limits);
+
+}  // namespace citymesh

@@ -1,0 +1,100 @@
+#include "services/worker/limited_source.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace citymesh {
+namespace {
+
+using testing::HasSubstr;
+
+/// Three buildings of ten points, four in a part and one in an installation of each.
+class ThreeBuildings final : public CitySource {
+ public:
+  Result<Selection> select(const BuildingQuery&, const RunContext&) override {
+    Selection selection;
+    selection.buildings = 3;
+    return selection;
+  }
+  Result<void> read(const BuildingQuery&, const Selection&, const BuildingSink& sink,
+                    const RunContext&) override {
+    for (const auto* id : {"a", "b", "c"}) {
+      Building building = with_points(5);
+      building.gml_id = id;
+      building.parts.push_back(with_points(4));
+      building.installations.push_back(with_points(1));
+      if (auto taken = sink(std::move(building)); !taken) return taken;
+    }
+    return {};
+  }
+
+ private:
+  static Building with_points(std::size_t count) {
+    Building building;
+    building.geometries.emplace_back().points.resize(count);
+    return building;
+  }
+};
+
+std::unique_ptr<CitySource> three_buildings(const JobLimits& limits) {
+  return limited(std::make_unique<ThreeBuildings>(), limits);
+}
+
+BuildingQuery box(double min_x, double min_y, double max_x, double max_y, const char* crs) {
+  BuildingQuery query;
+  query.bbox = RequestBox{min_x, min_y, max_x, max_y, {}, {crs}};
+  return query;
+}
+
+void expect_refused(const Error& error, std::string_view why) {
+  EXPECT_EQ(error.code, ErrorCode::ResourceExhausted);
+  EXPECT_THAT(error.message, HasSubstr(std::string(why)));
+}
+
+TEST(LimitedSourceTest, WithoutLimitsNothingIsRefused) {
+  const auto source = three_buildings({});
+  const auto selection = source->select(box(-180, -90, 180, 90, "OGC:CRS84"), {});
+  ASSERT_TRUE(selection);
+  int read = 0;
+  EXPECT_TRUE(source->read({}, *selection, [&](Building&&) { return ++read, Result<void>{}; }, {}));
+  EXPECT_EQ(read, 3);
+}
+
+TEST(LimitedSourceTest, ABoxIsAsLargeAsItIsOnTheGround) {
+  const auto source = three_buildings({.area_km2 = 100});
+  // A tenth of a degree at 60° north: 11.1 km by 5.6 km.
+  EXPECT_TRUE(source->select(box(10.0, 60.0, 10.1, 60.1, "OGC:CRS84"), {}));
+  const auto equator = source->select(box(10.0, 0.0, 10.1, 0.1, "OGC:CRS84"), {});
+  ASSERT_FALSE(equator);
+  expect_refused(equator.error(), "covers 123.7 km², at most 100 km²");
+  EXPECT_TRUE(source->select(box(390'000, 5'800'000, 399'000, 5'809'000, "EPSG:25833"), {}));
+  const auto metres = source->select(box(390'000, 5'800'000, 401'000, 5'811'000, "EPSG:25833"), {});
+  ASSERT_FALSE(metres);
+  expect_refused(metres.error(), "covers 121 km²");
+  const auto feet = source->select(box(0, 0, 30'000, 30'000, "EPSG:2263"), {});
+  EXPECT_TRUE(feet) << feet.error().message;
+  EXPECT_TRUE(source->select({}, {}));
+}
+
+TEST(LimitedSourceTest, TooManyBuildingsAreNotEvenRead) {
+  EXPECT_TRUE(three_buildings({.buildings = 3})->select({}, {}));
+  const auto refused = three_buildings({.buildings = 2})->select({}, {});
+  ASSERT_FALSE(refused);
+  expect_refused(refused.error(), "3 buildings are selected, at most 2");
+}
+
+TEST(LimitedSourceTest, ReadingEndsWithTheBuildingThatHasAPointTooMany) {
+  std::vector<std::string> read;
+  const BuildingSink sink = [&](Building&& building) -> Result<void> {
+    read.push_back(building.gml_id);
+    return {};
+  };
+  const auto refused = three_buildings({.points = 20})->read({}, {}, sink, {});
+  ASSERT_FALSE(refused);
+  expect_refused(refused.error(), "up to 'c' have 30 points, at most 20");
+  EXPECT_THAT(read, testing::ElementsAre("a", "b"));
+  EXPECT_TRUE(three_buildings({.points = 30})->read({}, {}, sink, {}));
+}
+
+}  // namespace
+}  // namespace citymesh
