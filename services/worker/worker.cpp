@@ -216,7 +216,8 @@ void WorkerPool::Impl::work(const Claim& claim, const std::stop_token& shutdown)
   log.info("job_started", {{"job_id", job->id},
                            {"process", job->spec.process},
                            {"attempt", claim.attempt},
-                           {"worker", claim.worker}});
+                           {"worker", claim.worker},
+                           {"owner", job->owner}});
   metrics.job_started(job->spec.process);
   std::filesystem::path folder;
   auto outcome = run_job(*job, *run, folder);
