@@ -93,18 +93,17 @@ Result<Job> JobManager::submit(JobSpec spec, std::string idempotency_key, std::s
   job.idempotency_key = std::move(idempotency_key);
   job.owner = std::move(owner);
 
-  {
-    const std::scoped_lock lock(submit_mutex_);
-    if (!job.idempotency_key.empty()) {
-      auto first = repeated(job);
-      if (first || first.error().code != ErrorCode::NotFound) return first;
-    }
-    if (const auto room = check_room_for(job); !room) return room.error();
-    if (auto stored = jobs_.insert(job); !stored) {
-      // Another process has just taken the same key.
-      if (stored.error().code == ErrorCode::AlreadyExists) return repeated(job);
-      return stored.error();
-    }
+  if (!job.idempotency_key.empty()) {
+    auto first = repeated(job);
+    if (first || first.error().code != ErrorCode::NotFound) return first;
+  }
+  if (const auto room = take_room_for(job); !room) return room.error();
+  const auto stored = jobs_.insert(job);
+  leave_room_of(job);
+  if (!stored) {
+    // Somebody else has just taken the same key.
+    if (stored.error().code == ErrorCode::AlreadyExists) return repeated(job);
+    return stored.error();
   }
   if (auto queued = queue_.push(job.id); !queued) {
     (void)jobs_.erase(job.id);  // never leave a job behind that nobody works on
@@ -113,22 +112,37 @@ Result<Job> JobManager::submit(JobSpec spec, std::string idempotency_key, std::s
   return job;
 }
 
-Result<void> JobManager::check_room_for(const Job& job) {
+/// Jobs that are being stored count like stored ones, for many are stored at the same time. One
+/// whose commit has just ended may so count twice for a moment: the limit is never exceeded.
+Result<void> JobManager::take_room_for(const Job& job) {
+  const std::scoped_lock lock(storing_mutex_);
   const auto open = jobs_.count_open();
   if (!open) return open.error();
-  if (*open >= options_.max_open_jobs)
+  if (*open + storing_ >= options_.max_open_jobs)
     return fail(ErrorCode::ResourceExhausted,
-                fmt::format("{} jobs are open and at most {} may be; try again later", *open,
-                            options_.max_open_jobs));
-  if (options_.max_open_jobs_per_owner == 0 || job.owner.empty()) return {};
-  const auto own = jobs_.count_open_of(job.owner);
-  if (!own) return own.error();
-  if (*own >= options_.max_open_jobs_per_owner)
-    return fail(ErrorCode::ResourceExhausted,
-                fmt::format("{} of your jobs are open and at most {} may be; try again when one "
-                            "of them has ended",
-                            *own, options_.max_open_jobs_per_owner));
+                fmt::format("{} jobs are open and at most {} may be; try again later",
+                            *open + storing_, options_.max_open_jobs));
+  const auto found = storing_of_.find(job.owner);
+  const std::uint64_t of_owner = found == storing_of_.end() ? 0 : found->second;
+  if (options_.max_open_jobs_per_owner > 0 && !job.owner.empty()) {
+    const auto own = jobs_.count_open_of(job.owner);
+    if (!own) return own.error();
+    if (*own + of_owner >= options_.max_open_jobs_per_owner)
+      return fail(ErrorCode::ResourceExhausted,
+                  fmt::format("{} of your jobs are open and at most {} may be; try again when one "
+                              "of them has ended",
+                              *own + of_owner, options_.max_open_jobs_per_owner));
+  }
+  ++storing_;
+  ++storing_of_[job.owner];
   return {};
+}
+
+void JobManager::leave_room_of(const Job& job) {
+  const std::scoped_lock lock(storing_mutex_);
+  --storing_;
+  const auto found = storing_of_.find(job.owner);
+  if (--found->second == 0) storing_of_.erase(found);
 }
 
 /// The job that a request with the key of `job` got before.

@@ -73,14 +73,17 @@ class JobManager {
   Result<Job> wait_until(const std::string& id, TimeMs wait_ms,
                          const std::function<bool(const Job&)>& enough);
   Result<Job> repeated(const Job& job);
-  Result<void> check_room_for(const Job& job);
+  Result<void> take_room_for(const Job& job);
+  void leave_room_of(const Job& job);
 
   JobStore& jobs_;
   TaskQueue& queue_;
   ResultStore& results_;
   JobManagerOptions options_;
 
-  std::mutex submit_mutex_;  // counting the open jobs and adding one is a single step
+  std::mutex storing_mutex_;
+  std::uint64_t storing_ = 0;                          // jobs on their way into the store
+  std::map<std::string, std::uint64_t> storing_of_{};  // the same by owner
   std::mutex waiting_mutex_;
   std::map<std::string, Waiting> waiting_;  // by job id; only jobs somebody waits for
   JobFeed::Subscription subscription_;

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 #include <utility>
 
+#include "services/sqlite/group_commit.h"
 #include "services/sqlite/sqlite.h"
 #include "services/stores/job_rows.h"
 
@@ -17,7 +19,6 @@ using nlohmann::json;
 using sqlite::Connection;
 using sqlite::Durability;
 using sqlite::Failure;
-using sqlite::Transaction;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kQueuePoll = std::chrono::milliseconds(200);  // for tasks other processes push
@@ -73,8 +74,21 @@ void bind_owner(sqlite::Query& query, const JobFilter& filter) {
 struct EmbeddedStore::Connections {
   explicit Connections(const std::filesystem::path& file) : writer(file), reader(file) {}
 
-  std::mutex writer_mutex;
+  /// `work(writer)` returns a Result; of an error nothing stays.
+  template <class Work>
+  std::invoke_result_t<Work, Connection&> write(Durability durability, const Work& work) {
+    return guarded([&] {
+      std::optional<std::invoke_result_t<Work, Connection&>> result;
+      commits.write(durability, [&] {
+        result.emplace(work(writer));
+        return static_cast<bool>(*result);
+      });
+      return *std::move(result);
+    });
+  }
+
   Connection writer;
+  sqlite::GroupCommit commits{writer};
   std::mutex reader_mutex;
   Connection reader;
 };
@@ -100,32 +114,27 @@ Result<std::unique_ptr<EmbeddedStore>> EmbeddedStore::open(const std::filesystem
 }
 
 Result<std::uint64_t> EmbeddedStore::recover() {
-  auto running = guarded([&]() -> Result<std::uint64_t> {
-    const std::scoped_lock lock(connections_->writer_mutex);
-    auto& writer = connections_->writer;
-    Transaction transaction(writer, Durability::Full);
-    writer.run("UPDATE task SET lease_until = 0");
-    writer.run(
-        "INSERT INTO task (job_id) SELECT id FROM job WHERE state IN ('accepted', 'running')"
-        " AND id NOT IN (SELECT job_id FROM task) ORDER BY created");
-    auto query = writer.query(
-        "UPDATE job SET state = 'accepted', message = 'queued again: the server stopped while it"
-        " ran', stage = '', done = 0, total = 0, percent = 0, updated = max(updated + 1, ?1)"
-        " WHERE state = 'running'");
-    query.bind(1, now_ms()).run();
-    const auto count = writer.changed_rows();
-    transaction.commit();
-    return static_cast<std::uint64_t>(count);
-  });
+  auto running =
+      connections_->write(Durability::Full, [&](Connection& writer) -> Result<std::uint64_t> {
+        writer.run("UPDATE task SET lease_until = 0");
+        writer.run(
+            "INSERT INTO task (job_id) SELECT id FROM job WHERE state IN ('accepted', 'running')"
+            " AND id NOT IN (SELECT job_id FROM task) ORDER BY created");
+        auto query = writer.query(
+            "UPDATE job SET state = 'accepted', message = 'queued again: the server stopped while "
+            "it"
+            " ran', stage = '', done = 0, total = 0, percent = 0, updated = max(updated + 1, ?1)"
+            " WHERE state = 'running'");
+        query.bind(1, now_ms()).run();
+        const auto count = writer.changed_rows();
+        return static_cast<std::uint64_t>(count);
+      });
   wake_claimers();
   return running;
 }
 
 Result<void> EmbeddedStore::insert(const Job& job) {
-  auto stored = guarded([&]() -> Result<void> {
-    const std::scoped_lock lock(connections_->writer_mutex);
-    auto& writer = connections_->writer;
-    Transaction transaction(writer, Durability::Full);
+  auto stored = connections_->write(Durability::Full, [&](Connection& writer) -> Result<void> {
     if (find_job(writer, job.id))
       return fail(ErrorCode::AlreadyExists, fmt::format("job '{}' exists already", job.id));
     if (find_job_by_key(writer, job.owner, job.idempotency_key))
@@ -133,7 +142,6 @@ Result<void> EmbeddedStore::insert(const Job& job) {
           ErrorCode::AlreadyExists,
           fmt::format("a job with idempotency key '{}' exists already", job.idempotency_key));
     insert_job(writer, job);
-    transaction.commit();
     return {};
   });
   if (stored) changes().publish(job);
@@ -202,10 +210,7 @@ Result<std::uint64_t> EmbeddedStore::result_bytes() {
 }
 
 Result<Job> EmbeddedStore::drop_results(const std::string& id, std::string_view message) {
-  auto dropped = guarded([&]() -> Result<Job> {
-    const std::scoped_lock lock(connections_->writer_mutex);
-    auto& writer = connections_->writer;
-    Transaction transaction(writer, Durability::Full);
+  auto dropped = connections_->write(Durability::Full, [&](Connection& writer) -> Result<Job> {
     auto job = find_job(writer, id);
     if (!job) return no_such_job(id);
     if (!is_final(job->state))
@@ -215,7 +220,6 @@ Result<Job> EmbeddedStore::drop_results(const std::string& id, std::string_view 
     job->results.clear();
     job->message = message;
     write_job(writer, *job);
-    transaction.commit();
     return *std::move(job);
   });
   if (dropped) changes().publish(*dropped);
@@ -254,10 +258,7 @@ Result<std::uint64_t> EmbeddedStore::count_open_of(const std::string& owner) {
 
 Result<Job> EmbeddedStore::update(const std::string& id, std::optional<std::uint32_t> attempt,
                                   const std::function<void(Job&)>& change) {
-  auto updated = guarded([&]() -> Result<Job> {
-    const std::scoped_lock lock(connections_->writer_mutex);
-    auto& writer = connections_->writer;
-    Transaction transaction(writer, Durability::Full);
+  auto updated = connections_->write(Durability::Full, [&](Connection& writer) -> Result<Job> {
     auto job = find_job(writer, id);
     if (!job) return no_such_job(id);
     if (is_final(job->state))
@@ -270,7 +271,6 @@ Result<Job> EmbeddedStore::update(const std::string& id, std::optional<std::uint
     change(*job);
     job->id = id;
     write_job(writer, *job);
-    transaction.commit();
     return *std::move(job);
   });
   if (updated) changes().publish(*updated);
@@ -280,10 +280,7 @@ Result<Job> EmbeddedStore::update(const std::string& id, std::optional<std::uint
 Result<void> EmbeddedStore::set_progress(const std::string& id, std::uint32_t attempt,
                                          const JobProgress& progress, std::string_view message,
                                          int percent) {
-  auto job = guarded([&]() -> Result<Job> {
-    const std::scoped_lock lock(connections_->writer_mutex);
-    auto& writer = connections_->writer;
-    Transaction transaction(writer, Durability::Relaxed);
+  auto job = connections_->write(Durability::Relaxed, [&](Connection& writer) -> Result<Job> {
     auto current = find_job(writer, id);
     if (!current) return no_such_job(id);
     if (current->state != JobState::Running || current->attempt != attempt)
@@ -293,7 +290,6 @@ Result<void> EmbeddedStore::set_progress(const std::string& id, std::uint32_t at
     current->message = message;
     current->percent = percent;
     write_job(writer, *current);
-    transaction.commit();
     return *std::move(current);
   });
   if (!job) return job.error();
@@ -302,25 +298,17 @@ Result<void> EmbeddedStore::set_progress(const std::string& id, std::uint32_t at
 }
 
 Result<void> EmbeddedStore::erase(const std::string& id) {
-  return guarded([&]() -> Result<void> {
-    const std::scoped_lock lock(connections_->writer_mutex);
-    auto& writer = connections_->writer;
-    Transaction transaction(writer, Durability::Full);
+  return connections_->write(Durability::Full, [&](Connection& writer) -> Result<void> {
     writer.query("DELETE FROM job WHERE id = ?1").bind(1, id).run();
     if (writer.changed_rows() == 0) return no_such_job(id);
-    transaction.commit();
     return {};
   });
 }
 
 Result<void> EmbeddedStore::push(const std::string& job_id) {
-  auto pushed = guarded([&]() -> Result<void> {
-    const std::scoped_lock lock(connections_->writer_mutex);
-    auto& writer = connections_->writer;
-    Transaction transaction(writer, Durability::Full);
+  auto pushed = connections_->write(Durability::Full, [&](Connection& writer) -> Result<void> {
     if (!find_job(writer, job_id)) return no_such_job(job_id);
     writer.query("INSERT OR IGNORE INTO task (job_id) VALUES (?1)").bind(1, job_id).run();
-    transaction.commit();
     return {};
   });
   if (pushed) wake_claimers();
@@ -347,17 +335,18 @@ Result<std::optional<Claim>> EmbeddedStore::claim(const std::string& worker, Tim
 
 Result<std::optional<Claim>> EmbeddedStore::claim_now(const std::string& worker, TimeMs lease_ms) {
   const auto now = now_ms();
+  // A look without the write lock: idle workers disturb nobody.
+  const auto some = guarded([&]() -> Result<bool> {
+    const std::scoped_lock lock(connections_->reader_mutex);
+    auto free = connections_->reader.query("SELECT 1 FROM task WHERE lease_until <= ?1 LIMIT 1");
+    return free.bind(1, now).step();
+  });
+  if (!some) return some.error();
+  if (!*some) return std::optional<Claim>{};
+
   std::optional<Job> changed;
-  auto claimed = guarded([&]() -> Result<std::optional<Claim>> {
-    {
-      // A look without the write lock: idle workers disturb nobody.
-      const std::scoped_lock lock(connections_->reader_mutex);
-      auto free = connections_->reader.query("SELECT 1 FROM task WHERE lease_until <= ?1 LIMIT 1");
-      if (!free.bind(1, now).step()) return std::optional<Claim>{};
-    }
-    const std::scoped_lock lock(connections_->writer_mutex);
-    auto& writer = connections_->writer;
-    Transaction transaction(writer, Durability::Full);
+  using Claimed = Result<std::optional<Claim>>;
+  auto claimed = connections_->write(Durability::Full, [&](Connection& writer) -> Claimed {
     for (;;) {
       std::string job_id;
       std::int64_t deaths = 0;
@@ -398,7 +387,6 @@ Result<std::optional<Claim>> EmbeddedStore::claim_now(const std::string& worker,
               .bind(4, now + lease_ms)
               .bind(5, deaths)
               .run();
-          transaction.commit();
           return std::optional(Claim{job_id, job->attempt, worker});
         }
       }
@@ -406,7 +394,6 @@ Result<std::optional<Claim>> EmbeddedStore::claim_now(const std::string& worker,
       // Closed jobs are told one at a time; the next call goes on.
       if (changed) break;
     }
-    transaction.commit();
     return std::optional<Claim>{};
   });
   if (claimed && changed) changes().publish(*changed);
@@ -414,10 +401,7 @@ Result<std::optional<Claim>> EmbeddedStore::claim_now(const std::string& worker,
 }
 
 Result<void> EmbeddedStore::heartbeat(const Claim& claim, TimeMs lease_ms) {
-  return guarded([&]() -> Result<void> {
-    const std::scoped_lock lock(connections_->writer_mutex);
-    auto& writer = connections_->writer;
-    Transaction transaction(writer, Durability::Relaxed);
+  return connections_->write(Durability::Relaxed, [&](Connection& writer) -> Result<void> {
     writer
         .query(
             "UPDATE task SET lease_until = ?4 WHERE job_id = ?1 AND worker = ?2 AND attempt = ?3")
@@ -427,32 +411,24 @@ Result<void> EmbeddedStore::heartbeat(const Claim& claim, TimeMs lease_ms) {
         .bind(4, now_ms() + lease_ms)
         .run();
     if (writer.changed_rows() == 0) return lease_lost(claim);
-    transaction.commit();
     return {};
   });
 }
 
 Result<void> EmbeddedStore::done(const Claim& claim) {
-  return guarded([&]() -> Result<void> {
-    const std::scoped_lock lock(connections_->writer_mutex);
-    auto& writer = connections_->writer;
-    Transaction transaction(writer, Durability::Full);
+  return connections_->write(Durability::Full, [&](Connection& writer) -> Result<void> {
     writer.query("DELETE FROM task WHERE job_id = ?1 AND worker = ?2 AND attempt = ?3")
         .bind(1, claim.job_id)
         .bind(2, claim.worker)
         .bind(3, std::int64_t{claim.attempt})
         .run();
     if (writer.changed_rows() == 0) return lease_lost(claim);
-    transaction.commit();
     return {};
   });
 }
 
 Result<void> EmbeddedStore::release(const Claim& claim) {
-  auto released = guarded([&]() -> Result<void> {
-    const std::scoped_lock lock(connections_->writer_mutex);
-    auto& writer = connections_->writer;
-    Transaction transaction(writer, Durability::Full);
+  auto released = connections_->write(Durability::Full, [&](Connection& writer) -> Result<void> {
     writer
         .query(
             "UPDATE task SET worker = '', lease_until = 0"
@@ -462,7 +438,6 @@ Result<void> EmbeddedStore::release(const Claim& claim) {
         .bind(3, std::int64_t{claim.attempt})
         .run();
     if (writer.changed_rows() == 0) return lease_lost(claim);
-    transaction.commit();
     return {};
   });
   if (released) wake_claimers();
@@ -470,12 +445,8 @@ Result<void> EmbeddedStore::release(const Claim& claim) {
 }
 
 Result<void> EmbeddedStore::remove(const std::string& job_id) {
-  return guarded([&]() -> Result<void> {
-    const std::scoped_lock lock(connections_->writer_mutex);
-    auto& writer = connections_->writer;
-    Transaction transaction(writer, Durability::Full);
+  return connections_->write(Durability::Full, [&](Connection& writer) -> Result<void> {
     writer.query("DELETE FROM task WHERE job_id = ?1").bind(1, job_id).run();
-    transaction.commit();
     return {};
   });
 }
