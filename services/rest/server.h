@@ -31,7 +31,9 @@ struct RestOptions {
   std::uint64_t max_inline_bytes = 16 << 20;  ///< larger results in a document are given as links
   double sync_wait_s = 30;  ///< longest wait of a synchronous execution, then a job is the answer
   unsigned io_threads = 2;
-  unsigned handler_threads = 4;  ///< store and result files are read here, never on an I/O thread
+  /// Store and result files are read here, never on an I/O thread. Most of them wait for the disk,
+  /// and what waits together is committed together.
+  unsigned handler_threads = 32;
   double idle_timeout_s = 60;    ///< of an open connection between two requests
   double header_timeout_s = 10;  ///< from a header's first byte to its last; of TLS's greeting
   double body_timeout_s = 60;    ///< until a request's body is complete

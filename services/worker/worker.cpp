@@ -1,6 +1,7 @@
 #include "services/worker/worker.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -27,6 +28,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Milliseconds = std::chrono::milliseconds;
 
+constexpr int kPatience = 5;  ///< nice value of working threads
 constexpr TimeMs kClaimWaitMs = 250;
 constexpr Milliseconds kKeeperTick{50};  // dismissals made by another process show within this time
 constexpr Milliseconds kRestAfterError{500};
@@ -147,6 +149,8 @@ void WorkerPool::start() {
   for (unsigned i = 0; i < std::max(1u, pool.options.workers); ++i)
     pool.workers.emplace_back(
         [&pool, name = fmt::format("{}-{}", process, i)](const std::stop_token& stop) {
+          // Answers go before work. Threads that a job starts are as patient.
+          (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kPatience);
           pool.claim_and_work(stop, name);
         });
 }
