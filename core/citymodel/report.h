@@ -69,6 +69,8 @@ struct RunReport {
       rungs{};  ///< histogram over delivered buildings
   std::vector<std::pair<std::string, std::uint64_t>>
       drop_reasons{};  ///< histogram over dropped buildings
+  std::vector<std::pair<std::string, std::uint64_t>>
+      issues{};  ///< found in the input, by code; with those of parts
   std::uint64_t bodies = 0, points = 0, triangles = 0;
   std::optional<std::uint64_t>
       contacts{};  ///< pairs of bodies that touch or overlap; none: not counted

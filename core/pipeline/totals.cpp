@@ -22,8 +22,11 @@ void count(Counts& counts, const std::string& outcome) {
 
 void Totals::add(const BuildingReport& building, const BuildingBodies* bodies) {
   count(report_.counts, building.outcome);
-  for (const PartReport& part : building.parts)
+  for (const Issue& issue : building.issues_before) ++issues_[issue_code_text(issue.code)];
+  for (const PartReport& part : building.parts) {
+    for (const Issue& issue : part.issues_before) ++issues_[issue_code_text(issue.code)];
     if (part.kind == ObjectKind::BuildingPart) count(report_.part_counts, part.outcome);
+  }
   if (building.outcome == "delivered") {
     if (!building.rung.empty()) ++rungs_[building.rung];
   } else {
@@ -79,6 +82,7 @@ RunReport Totals::finish() {
   }
   report_.rungs.assign(rungs_.begin(), rungs_.end());
   report_.drop_reasons.assign(reasons_.begin(), reasons_.end());
+  report_.issues.assign(issues_.begin(), issues_.end());
   if (report_.triangles > 0) {
     report_.min_edge_m = min_edge_m_;
     report_.min_angle_deg = std::acos(max_cosine_) * 180.0 / 3.14159265358979323846;

@@ -34,7 +34,7 @@ class Totals {
   bool keep_installations_ = false;
   std::uint64_t installations_ = 0;  ///< left out
   std::map<std::string, std::uint64_t> ade_elements_;
-  std::map<std::string, std::uint64_t> rungs_, reasons_;
+  std::map<std::string, std::uint64_t> rungs_, reasons_, issues_;
   double min_edge_m_ = std::numeric_limits<double>::infinity();
   double max_cosine_ = -1;
 };

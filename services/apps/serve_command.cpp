@@ -216,7 +216,10 @@ Result<void> serve(const ServeOptions& options) {
 
   Metrics metrics;
   metrics.on_collect([&queue = **store, &metrics] {
-    if (const auto waiting = queue.waiting()) metrics.set_queue_length(*waiting);
+    if (const auto waiting = queue.waiting())
+      metrics.set_queue(
+          waiting->tasks,
+          waiting->tasks == 0 ? 0 : static_cast<double>(now_ms() - waiting->oldest) / 1000.0);
   });
   JobManager jobs(
       **store, **store, **results,

@@ -84,7 +84,11 @@ class TaskQueue {
   virtual Result<void> done(const Claim& claim) = 0;     ///< removes the task
   virtual Result<void> release(const Claim& claim) = 0;  ///< back to the queue at once (shutdown)
   virtual Result<void> remove(const std::string& job_id) = 0;
-  virtual Result<std::uint64_t> waiting() = 0;  ///< tasks that no worker holds
+  struct Waiting {
+    std::uint64_t tasks = 0;  ///< that no worker holds
+    TimeMs oldest = 0;        ///< when the job of the first of them was created
+  };
+  virtual Result<Waiting> waiting() = 0;
 };
 
 /// Immutable result files. A job's files become visible all at once, by `commit`.

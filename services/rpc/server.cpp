@@ -9,6 +9,7 @@
 #include <grpcpp/security/tls_credentials_options.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -26,6 +27,29 @@
 
 namespace citymesh {
 namespace {
+
+/// As the documentation of gRPC writes it.
+std::string_view code_name(grpc::StatusCode code) {
+  constexpr std::array<std::string_view, 17> kNames{"OK",
+                                                    "CANCELLED",
+                                                    "UNKNOWN",
+                                                    "INVALID_ARGUMENT",
+                                                    "DEADLINE_EXCEEDED",
+                                                    "NOT_FOUND",
+                                                    "ALREADY_EXISTS",
+                                                    "PERMISSION_DENIED",
+                                                    "RESOURCE_EXHAUSTED",
+                                                    "FAILED_PRECONDITION",
+                                                    "ABORTED",
+                                                    "OUT_OF_RANGE",
+                                                    "UNIMPLEMENTED",
+                                                    "INTERNAL",
+                                                    "UNAVAILABLE",
+                                                    "DATA_LOSS",
+                                                    "UNAUTHENTICATED"};
+  const auto index = static_cast<std::size_t>(code);
+  return index < kNames.size() ? kNames[index] : "UNKNOWN";
+}
 
 using Clock = std::chrono::steady_clock;
 
@@ -156,7 +180,7 @@ class JobsService final : public v1::Jobs::Service {
         return {grpc::StatusCode::INTERNAL, error.what()};
       }
     }();
-    metrics_.rpc_request(method, fmt::format("{}", static_cast<int>(status.error_code())),
+    metrics_.rpc_request(method, code_name(status.error_code()),
                          std::chrono::duration<double>(Clock::now() - start).count());
     return status;
   }

@@ -451,12 +451,14 @@ Result<void> EmbeddedStore::remove(const std::string& job_id) {
   });
 }
 
-Result<std::uint64_t> EmbeddedStore::waiting() {
-  return guarded([&]() -> Result<std::uint64_t> {
+Result<TaskQueue::Waiting> EmbeddedStore::waiting() {
+  return guarded([&]() -> Result<Waiting> {
     const std::scoped_lock lock(connections_->reader_mutex);
-    auto row = connections_->reader.query("SELECT count(*) FROM task WHERE lease_until <= ?1");
+    auto row = connections_->reader.query(
+        "SELECT count(*), ifnull(min(created), 0) FROM task JOIN job ON job.id = task.job_id"
+        " WHERE lease_until <= ?1");
     row.bind(1, now_ms()).run();
-    return static_cast<std::uint64_t>(row.number(0));
+    return Waiting{static_cast<std::uint64_t>(row.number(0)), row.number(1)};
   });
 }
 

@@ -57,7 +57,7 @@ class EmbeddedStore final : public JobStore, public TaskQueue {
   Result<void> done(const Claim& claim) override;
   Result<void> release(const Claim& claim) override;
   Result<void> remove(const std::string& job_id) override;
-  Result<std::uint64_t> waiting() override;
+  Result<Waiting> waiting() override;
 
  private:
   struct Connections;

@@ -49,6 +49,16 @@ struct Metrics::Impl {
           .Name("citymesh_buildings_total")
           .Help("Buildings of successful jobs by outcome")
           .Register(registry);
+  prometheus::Family<prometheus::Counter>& issues =
+      prometheus::BuildCounter()
+          .Name("citymesh_issues_total")
+          .Help("Issues found in the buildings of successful jobs, by code")
+          .Register(registry);
+  prometheus::Gauge& queue_age = prometheus::BuildGauge()
+                                     .Name("citymesh_queue_age_seconds")
+                                     .Help("Age of the oldest job that waits for a worker")
+                                     .Register(registry)
+                                     .Add({});
   prometheus::Gauge& queue_length = prometheus::BuildGauge()
                                         .Name("citymesh_queue_length")
                                         .Help("Jobs that wait for a worker")
@@ -107,8 +117,13 @@ void Metrics::buildings(std::string_view outcome, std::uint64_t count) {
   impl_->buildings.Add({{"outcome", text_of(outcome)}}).Increment(static_cast<double>(count));
 }
 
-void Metrics::set_queue_length(std::uint64_t jobs) {
+void Metrics::issues(std::string_view code, std::uint64_t count) {
+  impl_->issues.Add({{"code", text_of(code)}}).Increment(static_cast<double>(count));
+}
+
+void Metrics::set_queue(std::uint64_t jobs, double oldest_age_s) {
   impl_->queue_length.Set(static_cast<double>(jobs));
+  impl_->queue_age.Set(oldest_age_s);
 }
 
 void Metrics::http_request(std::string_view method, std::string_view route, int status,

@@ -22,7 +22,9 @@ class Metrics {
   void stage_took(std::string_view process, std::string_view stage, double seconds);
   /// `outcome`: delivered, merged, dropped.
   void buildings(std::string_view outcome, std::uint64_t count);
-  void set_queue_length(std::uint64_t jobs);
+  /// Found in the input; `code` as in the reports: 303, C105.
+  void issues(std::string_view code, std::uint64_t count);
+  void set_queue(std::uint64_t jobs, double oldest_age_s);
 
   /// `route` is the pattern (`/jobs/{id}`), never the path: labels must stay few.
   void http_request(std::string_view method, std::string_view route, int status, double seconds);

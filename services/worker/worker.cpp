@@ -143,6 +143,8 @@ void WorkerPool::start() {
   auto& pool = *impl_;
   pool.dismissals = pool.jobs.changes().subscribe([&pool](const Job& job) {
     if (job.dismiss_requested) pool.dismiss(job.id);
+    // Of a job that is given up nobody is left to take the files away.
+    if (job.state == JobState::Failed && job.attempt > 0) pool.discard({job.id, job.attempt, {}});
   });
   pool.keeper = std::jthread([&pool](const std::stop_token& stop) { pool.keep(stop); });
   const auto process = fmt::format("{}-{}", ::getpid(), new_job_id().substr(0, 8));
@@ -310,6 +312,7 @@ std::string_view WorkerPool::Impl::finish(const Run& run, Result<RunOutcome> out
   metrics.buildings("delivered", counts.delivered);
   metrics.buildings("merged", counts.merged);
   metrics.buildings("dropped", counts.dropped);
+  for (const auto& [code, count] : outcome->report.issues) metrics.issues(code, count);
   return close(run, JobState::Successful, summary(*outcome), std::nullopt, *std::move(files));
 }
 

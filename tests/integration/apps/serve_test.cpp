@@ -147,6 +147,7 @@ TEST_F(ServeTest, AJobThatKillsItsServerIsFailedAfterTheLastTry) {
   const auto job = server.ended(id);
   EXPECT_EQ(job.state(), v1::FAILED);
   EXPECT_THAT(job.message(), HasSubstr("the worker died 2 times"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "state" / "results" / id)) << "half a result";
 }
 
 TEST_F(ServeTest, AGracefulStopHandsTheJobToTheNextServer) {

@@ -256,7 +256,7 @@ TEST_F(RpcServerTest, ResultsThatHaveExpiredAreNotFoundAndNotListed) {
 TEST_F(RpcServerTest, CallsAreCounted) {
   submitted();
   EXPECT_THAT(metrics_.text(),
-              HasSubstr("citymesh_grpc_requests_total{code=\"0\",method=\"Submit\"} 1"));
+              HasSubstr("citymesh_grpc_requests_total{code=\"OK\",method=\"Submit\"} 1"));
 }
 
 TEST_F(RpcServerTest, ATakenPortIsAnError) {

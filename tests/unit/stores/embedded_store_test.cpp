@@ -204,10 +204,10 @@ TEST_F(EmbeddedStoreTest, NeverChangesAFinalJob) {
 TEST_F(EmbeddedStoreTest, HandsOutTheOldestJobFirst) {
   const auto first = queued();
   const auto second = queued();
-  EXPECT_EQ(*store_->waiting(), 2u);
+  EXPECT_EQ(store_->waiting()->tasks, 2u);
   EXPECT_EQ(claimed().job_id, first.id);
   EXPECT_EQ(claimed().job_id, second.id);
-  EXPECT_EQ(*store_->waiting(), 0u);
+  EXPECT_EQ(store_->waiting()->tasks, 0u);
   EXPECT_FALSE(*store_->claim("worker", kLongLease, 0));
 }
 
