@@ -18,7 +18,8 @@ if(CITYMESH_SERVICES)
   find_package(Protobuf REQUIRED)              # before gRPC: module mode
   find_package(gRPC CONFIG REQUIRED)           # streaming API
   find_package(Boost CONFIG REQUIRED)          # Beast: HTTP with coroutines (headers only)
-  find_package(OpenSSL REQUIRED)               # signatures and hashes of clients, TLS
+  find_package(OpenSSL REQUIRED)               # signatures and hashes of clients and callbacks, TLS
+  find_package(CURL REQUIRED)                  # sends callbacks
   find_package(SQLite3 REQUIRED)               # embedded job store; catalogue with an R*Tree
   pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)  # catalogue: has a file changed?
   find_package(spdlog CONFIG REQUIRED)         # JSON log lines

@@ -68,6 +68,7 @@ Result<json> check_bbox(const json& value) {
 }
 
 Result<json> check(const OptionSpec& option, const json& value) {
+  if (value.is_null() && option.default_json == "null") return value;
   switch (option.kind) {
     case OptionKind::Boolean:
       if (!value.is_boolean()) return wrong(option.name, value, "true or false");
@@ -106,8 +107,9 @@ Result<json> check(const OptionSpec& option, const json& value) {
       return unique;
     }
     case OptionKind::BoundingBox:
-      if (value.is_null()) return value;
       return check_bbox(value);
+    case OptionKind::Json:
+      return value;
   }
   return value;
 }
@@ -155,11 +157,18 @@ Result<std::string> canonical_inputs(std::string_view process, std::string_view 
   if (!spec)
     return fail(ErrorCode::NotFound,
                 fmt::format("process `{}` does not exist; available: {}", process, process_ids()));
+  auto text = complete_inputs(*spec, inputs_json);
+  if (!text) return text;
+  if (auto readable = read_inputs(*text); !readable) return readable.error();
+  return text;
+}
+
+Result<std::string> complete_inputs(const ProcessSpec& process, std::string_view inputs_json) {
   auto given = parse_object(inputs_json.empty() ? "{}" : inputs_json);
   if (!given) return given.error();
 
   json canonical = json::object();
-  for (const OptionSpec& option : spec->inputs) {
+  for (const OptionSpec& option : process.inputs) {
     const auto found = given->find(std::string(option.name));
     auto value = found == given->end() ? Result<json>(json::parse(option.default_json))
                                        : check(option, *found);
@@ -169,14 +178,12 @@ Result<std::string> canonical_inputs(std::string_view process, std::string_view 
   for (const auto& [name, value] : given->items())
     if (!canonical.contains(name)) {
       std::vector<std::string_view> known;
-      for (const OptionSpec& option : spec->inputs) known.push_back(option.name);
+      for (const OptionSpec& option : process.inputs) known.push_back(option.name);
       return fail(ErrorCode::InvalidArgument,
-                  fmt::format("input `{}` does not exist for {}; available: {}", name, process,
+                  fmt::format("input `{}` does not exist for {}; available: {}", name, process.id,
                               fmt::join(known, ", ")));
     }
-  std::string text = canonical.dump(-1, ' ', false, json::error_handler_t::replace);
-  if (auto readable = read_inputs(text); !readable) return readable.error();
-  return text;
+  return canonical.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 Result<Inputs> read_inputs(std::string_view canonical_json) {

@@ -169,6 +169,8 @@ std::string_view to_string(OptionKind kind) {
       return "list of texts";
     case OptionKind::BoundingBox:
       return "bounding box";
+    case OptionKind::Json:
+      return "JSON value";
   }
   return "";
 }

@@ -8,7 +8,7 @@
 
 namespace citymesh {
 
-enum class OptionKind { Boolean, Integer, Number, Text, TextList, BoundingBox };
+enum class OptionKind { Boolean, Integer, Number, Text, TextList, BoundingBox, Json };
 
 std::string_view to_string(OptionKind kind);  ///< for people: "whole number", "list of texts"
 
@@ -20,12 +20,15 @@ struct OptionSpec {
   std::string_view description;
   std::span<const std::string_view> choices{};  ///< allowed texts; empty: any
   double minimum = 0, maximum = 0;              ///< of numbers; equal: not limited
+  /// JSON schema, where the kind does not say it all. The value of kind Json is not checked.
+  std::string_view schema_json{};
 };
 
 struct OutputSpec {
   std::string_view id;  ///< `report` or a format key
   std::string_view media_type;
   std::string_view title;
+  std::string_view schema_json{};  ///< empty: an object or bytes, by the media type
 };
 
 /// A recipe: which rooms run, with which options.
@@ -46,5 +49,7 @@ std::string process_ids();  ///< "export-for-simulation, heal, validate" for mes
 /// sorted. Errors: NotFound for an unknown process; InvalidArgument naming input, value and what is
 /// expected.
 Result<std::string> canonical_inputs(std::string_view process, std::string_view inputs_json);
+/// What of that the table alone can tell, for a process that need not be one of processes().
+Result<std::string> complete_inputs(const ProcessSpec& process, std::string_view inputs_json);
 
 }  // namespace citymesh

@@ -16,9 +16,13 @@
 #include "services/access/access.h"
 #include "services/apps/commands.h"
 #include "services/apps/signals.h"
+#include "services/callbacks/address_guard.h"
+#include "services/callbacks/sender.h"
+#include "services/callbacks/signature.h"
 #include "services/catalogue/catalogue.h"
 #include "services/jobs/job_manager.h"
 #include "services/jobs/retention.h"
+#include "services/rest/results.h"
 #include "services/rest/server.h"
 #include "services/rpc/server.h"
 #include "services/stores/embedded_store.h"
@@ -76,6 +80,16 @@ RestOptions rest_options(const ServeOptions& options, const Access& access) {
   rest.tls = {options.tls_certificate, options.tls_key};
   rest.access = &access;
   return rest;
+}
+
+Result<SenderOptions> sender_options(const ServeOptions& options) {
+  SenderOptions sender;
+  sender.post.allow_private = options.allow_private_callbacks;
+  if (options.callback_secret.empty()) return sender;
+  auto secret = read_secret(options.callback_secret.string());
+  if (!secret) return secret.error();
+  sender.secret = *std::move(secret);
+  return sender;
 }
 
 RpcOptions rpc_options(const ServeOptions& options, const Access& access) {
@@ -221,9 +235,16 @@ Result<void> serve(const ServeOptions& options) {
           waiting->tasks,
           waiting->tasks == 0 ? 0 : static_cast<double>(now_ms() - waiting->oldest) / 1000.0);
   });
+  auto sending = sender_options(options);
+  if (!sending) return sending.error();
   JobManager jobs(
       **store, **store, **results,
-      {.max_open_jobs = options.max_open_jobs, .max_open_jobs_per_owner = options.max_client_jobs});
+      {.max_open_jobs = options.max_open_jobs,
+       .max_open_jobs_per_owner = options.max_client_jobs,
+       .check_callback = [allow_private = options.allow_private_callbacks](const std::string& uri) {
+         return check_callback_uri(uri, allow_private);
+       }});
+  CallbackSender callbacks(**store, callback_json, log, *std::move(sending));
   WorkerPool workers(**store, **store, **results, *source, log, metrics, worker_options(options));
   RestServer rest(jobs, metrics, rest_options(options, **access));
   RpcServer rpc(jobs, metrics, rpc_options(options, **access));
@@ -233,6 +254,7 @@ Result<void> serve(const ServeOptions& options) {
   const auto rpc_port = rpc.start();
   if (!rpc_port) return rpc_port.error();
   workers.start();
+  callbacks.start();
   const auto sweeper = start_sweeping(**store, **results, options, log);
   const auto reader = start_reading_access(**access, rest, log);
   announce(log, options, {options.listen.host, *rest_port}, {options.grpc.host, *rpc_port});
@@ -242,6 +264,7 @@ Result<void> serve(const ServeOptions& options) {
   rest.stop();
   rpc.stop();
   workers.stop();
+  callbacks.stop();
   log.info("stopped", {});
   return {};
 }

@@ -100,6 +100,12 @@ void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> r
       "networks by comma whose Forwarded and X-Forwarded headers are believed");
   command.add_flag("--insecure", options.insecure,
                    "listen on the network although everybody may do everything");
+  add("--callback_secret", options.callback_secret,
+      "file with the secret that signs messages to subscribers; without it they are not signed")
+      ->type_name("FILE");
+  command.add_flag(
+      "--allow_private_callbacks", options.allow_private_callbacks,
+      "subscribers may also be in networks that are not public, this machine included");
   add("--workers", options.workers, "jobs worked on at the same time");
   add("--threads", options.threads, "threads of all workers together; 0: one per core");
   add("--lease_s", options.lease_s, "a worker not heard of for so long counts as dead");

@@ -40,6 +40,9 @@ struct ServeOptions {
   bool insecure = false;          ///< everybody on the network may do everything, and is meant to
   std::string trusted_proxies{};  ///< networks whose forwarded headers are believed
 
+  std::filesystem::path callback_secret{};  ///< file whose content signs messages to subscribers
+  bool allow_private_callbacks = false;     ///< subscribers may also be in the own network
+
   unsigned workers = 1;            ///< jobs worked on at the same time
   unsigned threads = 0;            ///< threads of all workers together; 0: one per core
   double lease_s = 30;             ///< a worker not heard of for so long counts as dead

@@ -29,12 +29,29 @@ std::string new_job_id();
 
 enum class Transmission { Value, Reference };
 
+/// Whom a job tells how it goes on (OGC's `subscriber`), by URI; empty: nobody.
+struct Subscriber {
+  std::string success_uri{};
+  std::string in_progress_uri{};
+  std::string failed_uri{};  ///< also when the job is dismissed
+  std::string base{};        ///< of the links in what is told; no part of what was asked for
+
+  bool empty() const {
+    return success_uri.empty() && in_progress_uri.empty() && failed_uri.empty();
+  }
+  friend bool operator==(const Subscriber& a, const Subscriber& b) {
+    return a.success_uri == b.success_uri && a.in_progress_uri == b.in_progress_uri &&
+           a.failed_uri == b.failed_uri;
+  }
+};
+
 /// What was asked for, in the one form that command line, REST and gRPC agree on.
 struct JobSpec {
   std::string process{};
-  std::string inputs_json{};                      ///< canonical_inputs() of core/pipeline
+  std::string inputs_json{};                      ///< checked_inputs() of services/offer
   std::map<std::string, Transmission> outputs{};  ///< empty: `report` plus the formats
   bool response_document = false;                 ///< OGC `response`: raw (default) or document
+  Subscriber subscriber{};
   friend bool operator==(const JobSpec&, const JobSpec&) = default;
 };
 

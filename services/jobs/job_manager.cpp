@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
-#include "core/processes/processes.h"
 #include "core/write/write.h"
 #include "services/jobs/retention.h"
+#include "services/offer/offer.h"
 
 namespace citymesh {
 namespace {
@@ -63,7 +63,7 @@ std::string with_requested_formats(const ProcessSpec& process, const JobSpec& sp
 
 JobManager::JobManager(JobStore& jobs, TaskQueue& queue, ResultStore& results,
                        JobManagerOptions options)
-    : jobs_(jobs), queue_(queue), results_(results), options_(options) {
+    : jobs_(jobs), queue_(queue), results_(results), options_(std::move(options)) {
   subscription_ = jobs_.changes().subscribe([this](const Job& job) {
     const std::scoped_lock lock(waiting_mutex_);
     const auto found = waiting_.find(job.id);
@@ -74,14 +74,15 @@ JobManager::JobManager(JobStore& jobs, TaskQueue& queue, ResultStore& results,
 }
 
 Result<Job> JobManager::submit(JobSpec spec, std::string idempotency_key, std::string owner) {
-  const auto* process = find_process(spec.process);
+  const auto* process = find_offered(spec.process);
   if (process == nullptr)
     return fail(ErrorCode::NotFound, fmt::format("process '{}' does not exist; available: {}",
-                                                 spec.process, process_ids()));
+                                                 spec.process, offered_ids()));
   if (auto checked = check_outputs(*process, spec); !checked) return checked.error();
-  auto inputs = canonical_inputs(spec.process, spec.inputs_json);
+  if (auto checked = check_subscriber(spec.subscriber); !checked) return checked.error();
+  auto inputs = checked_inputs(spec.process, spec.inputs_json);
   if (inputs && !spec.outputs.empty())  // what is parsed here has passed the limits already
-    inputs = canonical_inputs(spec.process, with_requested_formats(*process, spec));
+    inputs = checked_inputs(spec.process, with_requested_formats(*process, spec));
   if (!inputs) return inputs.error();
   spec.inputs_json = *std::move(inputs);
 
@@ -143,6 +144,18 @@ void JobManager::leave_room_of(const Job& job) {
   --storing_;
   const auto found = storing_of_.find(job.owner);
   if (--found->second == 0) storing_of_.erase(found);
+}
+
+Result<void> JobManager::check_subscriber(const Subscriber& subscriber) const {
+  if (subscriber.empty()) return {};
+  if (!options_.check_callback)
+    return fail(ErrorCode::Unimplemented,
+                "`subscriber`: this service calls nobody back; poll the job instead");
+  for (const auto* uri :
+       {&subscriber.success_uri, &subscriber.in_progress_uri, &subscriber.failed_uri})
+    if (!uri->empty())
+      if (auto checked = options_.check_callback(*uri); !checked) return checked;
+  return {};
 }
 
 /// The job that a request with the key of `job` got before.

@@ -19,6 +19,8 @@ struct JobManagerOptions {
   std::uint32_t max_open_jobs = 1000;
   /// The same for each owner; jobs of nobody in particular do not count. 0: no limit of its own.
   std::uint32_t max_open_jobs_per_owner = 0;
+  /// Whether a subscriber's URI may be called; empty: this service calls nobody.
+  std::function<Result<void>(const std::string& uri)> check_callback{};
   /// How long `dismiss` waits for a running job to stop before it answers.
   TimeMs dismiss_wait_ms = 1000;
   /// How often a waiting call looks for changes that another process made.
@@ -32,8 +34,8 @@ class JobManager {
   JobManager(JobStore& jobs, TaskQueue& queue, ResultStore& results,
              JobManagerOptions options = {});
 
-  /// Checks process and inputs (canonical_inputs), stores the job and queues it. Errors: NotFound
-  /// for an unknown process, InvalidArgument for inputs or outputs, ResourceExhausted.
+  /// Checks process and inputs (checked_inputs), stores the job and queues it. Errors: NotFound
+  /// for an unknown process, InvalidArgument for inputs, outputs or subscribers, ResourceExhausted.
   /// Requested outputs that are formats are added to the input `formats`, or are the formats where
   /// the request states none.
   /// With an idempotency key a repeated request of the same owner gets the job of the first one,
@@ -73,6 +75,7 @@ class JobManager {
   Result<Job> wait_until(const std::string& id, TimeMs wait_ms,
                          const std::function<bool(const Job&)>& enough);
   Result<Job> repeated(const Job& job);
+  Result<void> check_subscriber(const Subscriber& subscriber) const;
   Result<void> take_room_for(const Job& job);
   void leave_room_of(const Job& job);
 

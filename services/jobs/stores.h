@@ -54,6 +54,19 @@ class JobStore {
   /// The list of results of an ended job becomes empty. FailedPrecondition for an open job.
   virtual Result<Job> drop_results(const std::string& id, std::string_view message) = 0;
 
+  // What ended jobs still have to tell their subscribers.
+
+  struct DueCallback {
+    Job job{};
+    std::uint32_t attempt = 0;  ///< 1 for the first
+  };
+  /// Takes a callback that is due. Unless it is done before, it is due again after the time that
+  /// `retry_after` says for the attempt; where that says nothing, it was the last one.
+  virtual Result<std::optional<DueCallback>> take_callback(
+      TimeMs now,
+      const std::function<std::optional<TimeMs>(std::uint32_t attempt)>& retry_after) = 0;
+  virtual Result<void> callback_done(const std::string& id) = 0;
+
   /// Tells of every change made through this object. Another process may change jobs unheard.
   JobFeed& changes() { return changes_; }
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "core/processes/processes.h"
 #include "services/jobs/retention.h"
+#include "services/offer/offer.h"
 #include "services/rest/documents.h"
 #include "services/rest/problem.h"
 
@@ -27,7 +27,7 @@ Response json_response(std::string body, int status) {
 Response no_such_process(std::string_view id, std::string_view accept) {
   return problem_response(
       problems::kNoSuchProcess,
-      fmt::format("process '{}' does not exist; available: {}", id, process_ids()), accept);
+      fmt::format("process '{}' does not exist; available: {}", id, offered_ids()), accept);
 }
 
 Response job_error(const Error& error, std::string_view accept) {

@@ -7,6 +7,7 @@
 #include <exception>
 #include <optional>
 
+#include "services/offer/offer.h"
 #include "services/rest/answers.h"
 #include "services/rest/documents.h"
 #include "services/rest/job_query.h"
@@ -220,7 +221,7 @@ void Api::add_common_headers(const Request& request, Response& response) const {
 
 Response Api::landing(const Call& call) const {
   if (wants_page(call.accept, call.target.query))
-    return page_response(200, landing_page(call.base));
+    return page_response(200, landing_page(call.base), landing_json(call.base));
   return json_response(landing_json(call.base));
 }
 
@@ -250,16 +251,19 @@ Response Api::process_list(const Call& call) const {
                             : !limit ? limit.error().message
                                      : offset.error().message,
                             call.accept);
-  if (wants_page(call.accept, query)) return page_response(200, process_list_page(call.base));
-  return json_response(process_list_json(call.base, *limit, *offset));
+  auto document = process_list_json(call.base, *limit, *offset);
+  if (wants_page(call.accept, query))
+    return page_response(200, process_list_page(call.base), document);
+  return json_response(std::move(document));
 }
 
 Response Api::process(const Call& call) const {
-  const auto* process = find_process(call.values[0]);
+  const auto* process = find_offered(call.values[0]);
   if (process == nullptr) return no_such_process(call.values[0], call.accept);
+  auto document = process_description_json(call.base, *process);
   if (wants_page(call.accept, call.target.query))
-    return page_response(200, process_page(call.base, *process));
-  return json_response(process_description_json(call.base, *process));
+    return page_response(200, process_page(call.base, *process), document);
+  return json_response(std::move(document));
 }
 
 bool Api::is_open(std::string_view method, std::string_view path) {

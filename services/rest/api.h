@@ -79,6 +79,7 @@ class Api {
   Response metrics(const Call& call) const;
 
   Result<Job> find_job(const Call& call) const;
+  Response status_response(const Call& call, const Job& job) const;
 
   JobManager& jobs_;
   Metrics& metrics_;

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <optional>
 
+#include "services/offer/offer.h"
 #include "services/rest/answers.h"
 #include "services/rest/api.h"
 #include "services/rest/documents.h"
@@ -79,7 +80,7 @@ Response accepted(std::string_view base, const Job& job, const std::string& pref
 }  // namespace
 
 Response Api::execute(const Call& call) const {
-  const auto* process = find_process(call.values[0]);
+  const auto* process = find_offered(call.values[0]);
   if (process == nullptr) return no_such_process(call.values[0], call.accept);
   const auto content_type = call.request.headers.get("Content-Type");
   if (!is_json(content_type))
@@ -91,6 +92,7 @@ Response Api::execute(const Call& call) const {
   auto spec = decode_execute(*process, call.request.body);
   if (!spec)
     return problem_response(problem_kind(spec.error().code), spec.error().message, call.accept);
+  spec->subscriber.base = call.base;
   const auto key = idempotency_key(call.request.headers);
   if (!key)
     return problem_response(problem_kind(key.error().code), key.error().message, call.accept);

@@ -63,7 +63,8 @@ Response Api::job_list(const Call& call) const {
   };
   const auto next = more ? url(std::to_string(query->filter.offset)) : std::string{};
   if (wants_page(call.accept, call.target.query))
-    return page_response(200, job_list_page(call.base, jobs, next));
+    return page_response(200, job_list_page(call.base, jobs, next),
+                         job_list_json(call.base, jobs, url({}), next));
   return json_response(job_list_json(call.base, jobs, url({}), next));
 }
 
@@ -79,12 +80,17 @@ Result<Job> Api::find_job(const Call& call) const {
   return job;
 }
 
+Response Api::status_response(const Call& call, const Job& job) const {
+  auto status = status_json(call.base, job);
+  if (wants_page(call.accept, call.target.query))
+    return page_response(200, job_page(call.base, job), status);
+  return json_response(std::move(status));
+}
+
 Response Api::job(const Call& call) const {
   const auto job = find_job(call);
   if (!job) return job_error(job.error(), call.accept);
-  if (wants_page(call.accept, call.target.query))
-    return page_response(200, job_page(call.base, *job));
-  return json_response(status_json(call.base, *job));
+  return status_response(call, *job);
 }
 
 Response Api::dismiss(const Call& call) const {
@@ -96,7 +102,7 @@ Response Api::dismiss(const Call& call) const {
                             fmt::format("job {} is {} and cannot be dismissed any more", job->id,
                                         to_string(job->state)),
                             call.accept);
-  return json_response(status_json(call.base, *job));
+  return status_response(call, *job);
 }
 
 Response Api::results(const Call& call) const {
@@ -104,7 +110,7 @@ Response Api::results(const Call& call) const {
   if (!job) return job_error(job.error(), call.accept);
   if (auto answer = without_results(*job, call.base, call.accept)) return *std::move(answer);
   if (wants_page(call.accept, call.target.query))
-    return page_response(200, job_page(call.base, *job));
+    return page_response(200, job_page(call.base, *job), result_links_json(call.base, *job));
   return conditional(
       call.request,
       results_response(jobs_, *job, call.base, call.accept, options_.max_inline_bytes),

@@ -101,8 +101,8 @@ std::string landing_json(std::string_view base) {
 
 std::string conformance_json() {
   Json classes = Json::array();
-  for (const auto* name :
-       {"core", "ogc-process-description", "json", "oas30", "job-list", "dismiss"})
+  for (const auto* name : {"core", "ogc-process-description", "json", "html", "oas30", "job-list",
+                           "callback", "dismiss"})
     classes.push_back(
         fmt::format("http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/{}", name));
   return dump(Json{{"conformsTo", std::move(classes)}});

@@ -8,6 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "core/write/write.h"
+#include "services/offer/offer.h"
+
 namespace citymesh {
 namespace {
 
@@ -110,7 +113,7 @@ Result<json> plain_value(const std::string& name, const json& given) {
     return wrong(fmt::format("input `{}`", name), given,
                  "a plain value, a bounding box, or an object with the member `value`");
   if (auto known = check_members(fmt::format("input `{}`", name), given,
-                                 {"value", "mediaType", "encoding", "schema"});
+                                 {"value", "mediaType", "encoding", "schema", "format"});
       !known)
     return known.error();
   return given["value"];
@@ -162,15 +165,41 @@ Result<std::map<std::string, Transmission>> decode_outputs(const ProcessSpec& pr
   return wanted;
 }
 
-/// What `outputs` stands for when it is absent: the report and every format.
-Result<std::map<std::string, Transmission>> all_outputs(const JobSpec& spec) {
-  auto inputs = canonical_inputs(spec.process, spec.inputs_json);
+Result<Subscriber> decode_subscriber(const json& body) {
+  Subscriber wanted;
+  if (!body.contains("subscriber")) return wanted;
+  const auto& given = body["subscriber"];
+  if (!given.is_object() || given.empty())
+    return wrong("`subscriber`", given,
+                 "an object with `successUri`, `inProgressUri` or `failedUri`");
+  if (auto known =
+          check_members("`subscriber`", given, {"successUri", "inProgressUri", "failedUri"});
+      !known)
+    return known.error();
+  for (const auto& [name, uri] : {std::pair{"successUri", &wanted.success_uri},
+                                  std::pair{"inProgressUri", &wanted.in_progress_uri},
+                                  std::pair{"failedUri", &wanted.failed_uri}}) {
+    if (!given.contains(name)) continue;
+    if (!given[name].is_string() || given[name].get_ref<const std::string&>().empty())
+      return wrong(fmt::format("`subscriber`: `{}`", name), given[name], "a URI");
+    *uri = given[name].get<std::string>();
+  }
+  return wanted;
+}
+
+/// What `outputs` stands for when it is absent: every default output, of the formats those wanted.
+Result<std::map<std::string, Transmission>> all_outputs(const ProcessSpec& process,
+                                                        const JobSpec& spec) {
+  auto inputs = checked_inputs(spec.process, spec.inputs_json);
   if (!inputs) return inputs.error();
-  std::map<std::string, Transmission> all{{"report", Transmission::Value}};
-  const auto values = json::parse(*inputs, nullptr, false);
-  if (values.contains("formats"))
-    for (const auto& format : values["formats"])
-      all[format.get<std::string>()] = Transmission::Value;
+  const auto formats = json::parse(*inputs, nullptr, false).value("formats", json::array());
+  std::map<std::string, Transmission> all;
+  for (const auto& output : process.outputs) {
+    const bool left_out = find_format(output.id) != nullptr &&
+                          std::ranges::find(formats, json(output.id)) == formats.end();
+    if (is_default_output(process, output) && !left_out)
+      all[std::string(output.id)] = Transmission::Value;
+  }
   return all;
 }
 
@@ -179,10 +208,8 @@ Result<std::map<std::string, Transmission>> all_outputs(const JobSpec& spec) {
 Result<JobSpec> decode_execute(const ProcessSpec& process, std::string_view text) {
   auto body = parse_body(text);
   if (!body) return body.error();
-  if (body->contains("subscriber"))
-    return fail(ErrorCode::Unimplemented,
-                "`subscriber`: callbacks are not supported; poll the job instead");
-  if (auto known = check_members("the request body", *body, {"inputs", "outputs", "response"});
+  if (auto known =
+          check_members("the request body", *body, {"inputs", "outputs", "response", "subscriber"});
       !known)
     return known.error();
 
@@ -191,6 +218,10 @@ Result<JobSpec> decode_execute(const ProcessSpec& process, std::string_view text
   auto inputs = decode_inputs(*body);
   if (!inputs) return inputs.error();
   spec.inputs_json = *std::move(inputs);
+
+  auto subscriber = decode_subscriber(*body);
+  if (!subscriber) return subscriber.error();
+  spec.subscriber = *std::move(subscriber);
 
   auto outputs = decode_outputs(process, *body);
   if (!outputs) return outputs.error();
@@ -202,7 +233,7 @@ Result<JobSpec> decode_execute(const ProcessSpec& process, std::string_view text
     return wrong("`response`", response, "\"raw\" or \"document\"");
   spec.response_document = response == "document";
   if (spec.outputs.empty()) {
-    auto all = all_outputs(spec);
+    auto all = all_outputs(process, spec);
     if (!all) return all.error();
     spec.outputs = *std::move(all);
   }

@@ -13,7 +13,7 @@ namespace citymesh {
 /// Without `outputs` and `response` the results are a document of links; `outputs` without
 /// `response` means raw, as the standard says.
 /// Errors: InvalidArgument for malformed JSON (with its position), nesting, types and unknown
-/// members; Unimplemented for inputs by reference and callbacks.
+/// members; Unimplemented for inputs by reference.
 Result<JobSpec> decode_execute(const ProcessSpec& process, std::string_view body);
 
 }  // namespace citymesh

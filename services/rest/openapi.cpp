@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/version.h"
-#include "core/processes/processes.h"
+#include "services/offer/offer.h"
 #include "services/rest/links.h"
 #include "services/rest/processes.h"
 
@@ -50,6 +50,7 @@ Json parameter(std::string_view name, std::string_view in, std::string_view desc
 }
 
 Json text() { return {{"type", "string"}}; }
+Json url() { return {{"type", "string"}, {"format", "uri"}}; }
 Json whole_number(int minimum) { return {{"type", "integer"}, {"minimum", minimum}}; }
 Json date_time() { return {{"type", "string"}, {"format", "date-time"}}; }
 Json list_of(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
@@ -76,7 +77,8 @@ Json execute_schema(const ProcessSpec& process) {
   outputs_schema["additionalProperties"] = false;
   auto schema = object({{"inputs", Json::parse(inputs_schema_json(process))},
                         {"outputs", std::move(outputs_schema)},
-                        {"response", one_of({"raw", "document"})}},
+                        {"response", one_of({"raw", "document"})},
+                        {"subscriber", schema_ref("subscriber")}},
                        {});
   schema["additionalProperties"] = false;
   schema["example"] = Json::parse(example_request_json(process));
@@ -116,6 +118,8 @@ Json schemas() {
       {"output", object({{"transmissionMode", one_of({"value", "reference"})},
                          {"format", object({{"mediaType", text()}}, {})}},
                         {})},
+      {"subscriber",
+       object({{"successUri", url()}, {"inProgressUri", url()}, {"failedUri", url()}}, {})},
       {"qualifiedValue", object({{"value", Json::object()},
                                  {"mediaType", text()},
                                  {"encoding", text()},
@@ -151,7 +155,7 @@ Json schemas() {
                           {"detail", text()},
                           {"instance", text()}},
                          {"type"})}};
-  for (const auto& process : processes())
+  for (const auto& process : offered_processes())
     all[execute_schema_name(process)] = execute_schema(process);
   return all;
 }
@@ -160,13 +164,12 @@ Json header(std::string_view description, Json schema) {
   return {{"description", description}, {"schema", std::move(schema)}};
 }
 
-Json url() { return {{"type", "string"}, {"format", "uri"}}; }
 Json binary() { return {{"type", "string"}, {"format", "binary"}}; }
 
 /// A file of any output: JSON of any form, or bytes.
 Json file_content() {
   Json forms = Json::object();
-  for (const auto& process : processes())
+  for (const auto& process : offered_processes())
     for (const auto& output : process.outputs)
       if (is_json(output)) forms[std::string(output.media_type)]["schema"] = Json::object();
   forms["*/*"]["schema"] = binary();
@@ -184,6 +187,30 @@ Json result_answers() {
           {"204",
            {{"description", "Raw results by reference, in `Link` headers"},
             {"headers", {{"Link", header("One per output", text())}}}}}};
+}
+
+/// What a subscriber is sent, by POST to its address.
+Json callbacks() {
+  const auto told = [](std::string_view what, std::string_view schema) {
+    Json post = {
+        {"summary", what},
+        {"parameters",
+         Json::array({parameter("Citymesh-Signature", "header", "`t=SECONDS,v1=HMAC`", text()),
+                      parameter("Idempotency-Key", "header",
+                                "The same for every attempt to say the same", text())})},
+        {"requestBody",
+         {{"required", true}, {"content", content("application/json", schema_ref(schema))}}},
+        {"responses", {{"2XX", {{"description", "Received; anything else is tried again"}}}}}};
+    return Json{{"post", std::move(post)}};
+  };
+  return {{"successful",
+           {{"{$request.body#/subscriber/successUri}",
+             told("The job was successful: links to its results", "results")}}},
+          {"inProgress",
+           {{"{$request.body#/subscriber/inProgressUri}", told("The job gets on", "statusInfo")}}},
+          {"failed",
+           {{"{$request.body#/subscriber/failedUri}",
+             told("The job failed or was dismissed", "statusInfo")}}}};
 }
 
 Json execution_path(const ProcessSpec& process) {
@@ -218,6 +245,7 @@ Json execution_path(const ProcessSpec& process) {
   post["requestBody"] = {
       {"required", true},
       {"content", content("application/json", schema_ref(execute_schema_name(process)))}};
+  post["callbacks"] = callbacks();
   return {{"post", std::move(post)}};
 }
 
@@ -275,7 +303,7 @@ Json paths() {
   all["/processes/{processID}"] = get(operation(
       "process", "Processes", "Inputs and outputs of a process", Json::array({process_id, f}),
       {{"200", json_or_page("Process description", "process")}}));
-  for (const auto& process : processes())
+  for (const auto& process : offered_processes())
     all[fmt::format("/processes/{}/execution", process.id)] = execution_path(process);
 
   all["/jobs"] = get(operation(

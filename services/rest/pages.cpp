@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/version.h"
+#include "services/offer/offer.h"
 #include "services/rest/documents.h"
 #include "services/rest/processes.h"
 
@@ -23,7 +24,7 @@ table{border-collapse:collapse;width:100%;background:#fff}
 th,td{text-align:left;padding:.4rem .7rem;border-bottom:1px solid #e2e6eb;vertical-align:top}
 th{color:#55606e;font-weight:600}code,pre{font:14px/1.45 ui-monospace,monospace}
 pre{background:#fff;border:1px solid #e2e6eb;padding:.8rem;overflow:auto}
-a{color:#1b5fa8}progress{width:100%;height:1.1rem}
+a{color:#1b5fa8}details{margin-top:1.6rem}summary{cursor:pointer;color:#55606e}progress{width:100%;height:1.1rem}
 .muted{color:#55606e}.badge{padding:.1rem .6rem;border-radius:1rem;color:#fff;background:#6b7683}
 .running{background:#1b5fa8}.successful{background:#257a45}.failed{background:#b3261e}
 img.picture{width:100%;background:#fff;border:1px solid #e2e6eb}
@@ -89,6 +90,19 @@ std::string results_section(std::string_view base, const Job& job) {
   return html + "</table>" + picture;
 }
 
+std::string html_of(const nlohmann::ordered_json& value, std::string_view name = {}) {
+  if (value.is_string()) {
+    const auto text = escape_html(value.get<std::string>());
+    return name == "href" ? fmt::format("<a href=\"{0}\">{0}</a>", text) : text;
+  }
+  if (!value.is_structured()) return escape_html(value.dump());
+  std::string html = value.is_array() ? "<ol>" : "<table>";
+  for (const auto& [key, member] : value.items())
+    html += value.is_array() ? fmt::format("<li>{}</li>", html_of(member))
+                             : row(key, html_of(member, key));
+  return html + (value.is_array() ? "</ol>" : "</table>");
+}
+
 }  // namespace
 
 std::string escape_html(std::string_view text) {
@@ -116,7 +130,11 @@ std::string escape_html(std::string_view text) {
   return escaped;
 }
 
-Response page_response(int status, std::string page) {
+Response page_response(int status, std::string page, std::string_view document_json) {
+  if (!document_json.empty())
+    page.insert(page.rfind("</main>"),
+                fmt::format("<details><summary>Everything that the JSON says</summary>{}</details>",
+                            html_of(nlohmann::ordered_json::parse(document_json))));
   auto response = text_response(status, "text/html; charset=utf-8", std::move(page));
   response.headers.set("Content-Security-Policy",
                        "default-src 'none'; style-src 'unsafe-inline'; img-src *; base-uri 'none'; "
@@ -150,7 +168,7 @@ std::string conformance_page(std::string_view base, std::string_view conformance
 
 std::string process_list_page(std::string_view base) {
   std::string html = "<h1>Processes</h1><table><tr><th>Process</th><th>What it does</th></tr>";
-  for (const auto& process : processes())
+  for (const auto& process : offered_processes())
     html += fmt::format("<tr><td><a href=\"{}/processes/{}\">{}</a></td><td>{}</td></tr>", base,
                         process.id, process.id, escape_html(process.description));
   return page(base, "Processes", html + "</table>");
@@ -201,7 +219,7 @@ std::string job_page(std::string_view base, const Job& job) {
   if (!job.progress.stage.empty() && job.state != JobState::Successful)
     rows += row("Stage", escape_html(job.progress.stage));
   if (job.progress.total > 0)
-    rows += row("Buildings", fmt::format("{} of {}", job.progress.done, job.progress.total));
+    rows += row("Done", fmt::format("{} of {}", job.progress.done, job.progress.total));
   rows += row("Created", rfc3339(job.created));
   if (job.started) rows += row("Started", rfc3339(*job.started));
   if (job.finished) rows += row("Finished", rfc3339(*job.finished));

@@ -25,8 +25,9 @@ std::string job_page(std::string_view base, const Job& job);
 std::string api_page(std::string_view base, std::string_view openapi_json);
 std::string problem_page(const ProblemKind& kind, std::string_view detail);
 
-/// A page with the headers that keep it harmless.
-Response page_response(int status, std::string page);
+/// A page with the headers that keep it harmless. What the JSON document says is added to it, so
+/// that the page never says less.
+Response page_response(int status, std::string page, std::string_view document_json = {});
 
 std::string escape_html(std::string_view text);
 

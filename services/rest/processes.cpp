@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/version.h"
+#include "services/offer/offer.h"
 #include "services/rest/links.h"
 
 namespace citymesh {
@@ -36,28 +37,29 @@ Json bbox_schema() {
            {"crs", {{"type", "string"}, {"default", kCrs84}}}}}}}}};
 }
 
-Json schema_of(const OptionSpec& option) {
-  Json schema;
+Json kind_schema(const OptionSpec& option) {
+  if (!option.schema_json.empty()) return Json::parse(option.schema_json);
   switch (option.kind) {
     case OptionKind::Boolean:
-      schema = {{"type", "boolean"}};
-      break;
+      return {{"type", "boolean"}};
     case OptionKind::Integer:
-      schema = {{"type", "integer"}};
-      break;
+      return {{"type", "integer"}};
     case OptionKind::Number:
-      schema = {{"type", "number"}};
-      break;
+      return {{"type", "number"}};
     case OptionKind::Text:
-      schema = text_schema(option);
-      break;
+      return text_schema(option);
     case OptionKind::TextList:
-      schema = {{"type", "array"}, {"items", text_schema(option)}};
-      break;
+      return {{"type", "array"}, {"items", text_schema(option)}};
     case OptionKind::BoundingBox:
-      schema = bbox_schema();
+      return bbox_schema();
+    case OptionKind::Json:
       break;
   }
+  return Json::object();
+}
+
+Json schema_of(const OptionSpec& option) {
+  auto schema = kind_schema(option);
   if (option.minimum < option.maximum) {
     schema["minimum"] = option.minimum;
     schema["maximum"] = option.maximum;
@@ -77,6 +79,11 @@ std::string title_of(std::string_view name) {
 }
 
 Json output_schema(const OutputSpec& output) {
+  if (!output.schema_json.empty()) {
+    auto schema = Json::parse(output.schema_json);
+    schema["contentMediaType"] = output.media_type;
+    return schema;
+  }
   return {{"type", is_json(output) ? "object" : "string"}, {"contentMediaType", output.media_type}};
 }
 
@@ -108,7 +115,7 @@ bool is_json(const OutputSpec& output) {
 }
 
 std::string process_list_json(std::string_view base, std::size_t limit, std::size_t offset) {
-  const auto all = processes();
+  const auto all = offered_processes();
   const auto begin = std::min(offset, all.size());
   const auto end = begin + std::min(limit, all.size() - begin);
 
@@ -142,13 +149,18 @@ std::string inputs_schema_json(const ProcessSpec& process) {
   Json properties = Json::object();
   for (const auto& option : process.inputs) {
     auto plain = schema_of(option);
+    for (const auto* newer : {"contentMediaType", "contentEncoding"})  // than OpenAPI 3.0
+      plain.erase(newer);
     auto& input = properties[std::string(option.name)] = {{"description", option.description}};
     if (plain.contains("default")) {
       input["default"] = plain["default"];
       plain.erase("default");
     }
-    input["oneOf"] =
-        Json::array({std::move(plain), Json{{"$ref", "#/components/schemas/qualifiedValue"}}});
+    // OGC: an object is wrapped as {"value": {...}}, but for a bounding box.
+    const bool wrapped = option.kind == OptionKind::Json && plain.value("type", "") == "object" &&
+                         plain.value("format", "") != "ogc-bbox";
+    input["oneOf"] = Json::array({Json{{"$ref", "#/components/schemas/qualifiedValue"}}});
+    if (!wrapped) input["oneOf"].insert(input["oneOf"].begin(), std::move(plain));
   }
   return dump(Json{
       {"type", "object"}, {"additionalProperties", false}, {"properties", std::move(properties)}});
@@ -161,6 +173,8 @@ std::string example_request_json(const ProcessSpec& process) {
       inputs[std::string(option.name)] = {{"bbox", {13.40, 52.51, 13.41, 52.52}}, {"crs", kCrs84}};
     else if (option.name == "formats")
       inputs["formats"] = Json::parse(option.default_json, nullptr, false);
+  if (inputs.empty() && !process.inputs.empty() && process.inputs.front().kind == OptionKind::Text)
+    inputs[std::string(process.inputs.front().name)] = "hello";
   return dump(Json{{"inputs", std::move(inputs)}});
 }
 

@@ -1,4 +1,5 @@
 #include "services/rest/results.h"
+#include "services/offer/offer.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "core/processes/processes.h"
-#include "core/write/write.h"
 #include "services/rest/documents.h"
 #include "services/rest/links.h"
 #include "services/rest/problem.h"
@@ -56,14 +55,14 @@ struct Wanted {
   Transmission transmission;
 };
 
-/// What was asked for, or the report and every format as a link. An output that wrote no file is
+/// What was asked for, or every default output as a link. An output that wrote no file is
 /// left out.
 std::vector<Wanted> wanted_outputs(const Job& job) {
   auto outputs = job.spec.outputs;
   if (outputs.empty())
-    if (const auto* process = find_process(job.spec.process))
+    if (const auto* process = find_offered(job.spec.process))
       for (const auto& output : process->outputs)
-        if (output.id == "report" || find_format(output.id) != nullptr)
+        if (is_default_output(*process, output))
           outputs[std::string(output.id)] = Transmission::Reference;
   std::vector<Wanted> wanted;
   for (const auto& [output, transmission] : outputs)
@@ -157,13 +156,25 @@ Response multipart_response(JobManager& jobs, const Job& job, std::string_view b
 
 }  // namespace
 
+std::string result_links_json(std::string_view base, const Job& job) {
+  Json links = Json::object();
+  for (const auto& wanted : wanted_outputs(job))
+    links[wanted.output] = link_to(base, job, *wanted.file);
+  return links.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string callback_json(const Job& job) {
+  const auto& base = job.spec.subscriber.base;
+  return job.state == JobState::Successful ? result_links_json(base, job) : status_json(base, job);
+}
+
 const ResultFile* find_result(const Job& job, std::string_view name) {
   const auto by_name = std::ranges::find(job.results, name, &ResultFile::file_name);
   if (by_name != job.results.end()) return &*by_name;
 
   // Beside its main file an output may have companions (report.html, patches.json): the main file
   // is the first one with the media type that the process declares.
-  const auto* process = find_process(job.spec.process);
+  const auto* process = find_offered(job.spec.process);
   std::string_view media_type;
   if (process != nullptr)
     for (const auto& output : process->outputs)

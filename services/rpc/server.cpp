@@ -19,8 +19,8 @@
 #include <utility>
 
 #include "citymesh/v1/jobs.grpc.pb.h"
-#include "core/processes/processes.h"
 #include "services/jobs/job_manager.h"
+#include "services/offer/offer.h"
 #include "services/rpc/caller.h"
 #include "services/rpc/messages.h"
 #include "services/telemetry/metrics.h"
@@ -139,7 +139,7 @@ class JobsService final : public v1::Jobs::Service {
   grpc::Status Processes(grpc::ServerContext* context, const v1::ProcessesRequest*,
                          v1::ProcessesReply* answer) override {
     return served(*context, "Processes", Role::None, [&](const Client&) {
-      for (const auto& process : processes()) *answer->add_processes() = to_proto(process);
+      for (const auto& process : offered_processes()) *answer->add_processes() = to_proto(process);
       return grpc::Status::OK;
     });
   }

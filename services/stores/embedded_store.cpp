@@ -226,6 +226,47 @@ Result<Job> EmbeddedStore::drop_results(const std::string& id, std::string_view 
   return dropped;
 }
 
+Result<std::optional<JobStore::DueCallback>> EmbeddedStore::take_callback(
+    TimeMs now, const std::function<std::optional<TimeMs>(std::uint32_t attempt)>& retry_after) {
+  constexpr auto* kDue =
+      "SELECT id, callback_attempts FROM job WHERE callback_due <= ?1"
+      " AND state NOT IN ('accepted', 'running') ORDER BY callback_due LIMIT 1";
+  // Mostly there is none: no need to keep others from writing.
+  const auto any = guarded([&]() -> Result<bool> {
+    const std::scoped_lock lock(connections_->reader_mutex);
+    auto row = connections_->reader.query(kDue);
+    row.bind(1, now);
+    return row.step();
+  });
+  if (!any) return any.error();
+  if (!*any) return std::optional<DueCallback>{};
+  return connections_->write(
+      Durability::Full, [&](Connection& writer) -> Result<std::optional<DueCallback>> {
+        DueCallback due;
+        {
+          auto row = writer.query(kDue);
+          row.bind(1, now);
+          if (!row.step()) return std::optional<DueCallback>{};
+          due.attempt = static_cast<std::uint32_t>(row.number(1)) + 1;
+          due.job = find_job(writer, row.text(0)).value_or(Job{});
+        }
+        const auto wait = retry_after(due.attempt);
+        writer.query("UPDATE job SET callback_attempts = ?2, callback_due = ?3 WHERE id = ?1")
+            .bind(1, due.job.id)
+            .bind(2, std::int64_t{due.attempt})
+            .bind(3, wait ? std::optional<TimeMs>(now + *wait) : std::nullopt)
+            .run();
+        return std::optional(std::move(due));
+      });
+}
+
+Result<void> EmbeddedStore::callback_done(const std::string& id) {
+  return connections_->write(Durability::Full, [&](Connection& writer) -> Result<void> {
+    writer.query("UPDATE job SET callback_due = NULL WHERE id = ?1").bind(1, id).run();
+    return {};
+  });
+}
+
 Result<std::uint64_t> EmbeddedStore::count(const JobFilter& filter) {
   return guarded([&]() -> Result<std::uint64_t> {
     const auto [processes, states] = filter_texts(filter);

@@ -49,6 +49,10 @@ class EmbeddedStore final : public JobStore, public TaskQueue {
                                         std::uint32_t limit) override;
   Result<std::uint64_t> result_bytes() override;
   Result<Job> drop_results(const std::string& id, std::string_view message) override;
+  Result<std::optional<DueCallback>> take_callback(
+      TimeMs now,
+      const std::function<std::optional<TimeMs>(std::uint32_t attempt)>& retry_after) override;
+  Result<void> callback_done(const std::string& id) override;
 
   Result<void> push(const std::string& job_id) override;
   Result<std::optional<Claim>> claim(const std::string& worker, TimeMs lease_ms,

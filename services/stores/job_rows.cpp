@@ -69,8 +69,16 @@ constexpr const char* kVersion3 = R"sql(
   CREATE INDEX job_open_by_owner ON job (owner) WHERE state IN ('accepted', 'running');
 )sql";
 
+// `callback_due`: when an ended job is to tell its subscriber next; NULL: no more.
+constexpr const char* kVersion4 = R"sql(
+  ALTER TABLE job ADD COLUMN subscriber TEXT NOT NULL DEFAULT '{}';
+  ALTER TABLE job ADD COLUMN callback_attempts INTEGER NOT NULL DEFAULT 0;
+  ALTER TABLE job ADD COLUMN callback_due INTEGER;
+  CREATE INDEX job_by_callback ON job (callback_due) WHERE callback_due IS NOT NULL;
+)sql";
+
 /// Each makes its version out of the one before.
-constexpr const char* kSchemas[] = {kVersion1, kVersion2, kVersion3};
+constexpr const char* kSchemas[] = {kVersion1, kVersion2, kVersion3, kVersion4};
 constexpr std::int64_t kSchemaVersion = std::size(kSchemas);
 
 std::string dump(const json& value) {
@@ -92,6 +100,20 @@ std::string results_text(const std::vector<ResultFile>& files) {
                        {"media_type", file.media_type},
                        {"bytes", file.bytes}});
   return dump(results);
+}
+
+std::string subscriber_text(const Subscriber& subscriber) {
+  if (subscriber.empty()) return "{}";
+  return dump({{"success", subscriber.success_uri},
+               {"in_progress", subscriber.in_progress_uri},
+               {"failed", subscriber.failed_uri},
+               {"base", subscriber.base}});
+}
+
+Subscriber subscriber_from(const std::string& text) {
+  const auto stored = json::parse(text);
+  return {stored.value("success", ""), stored.value("in_progress", ""), stored.value("failed", ""),
+          stored.value("base", "")};
 }
 
 ErrorCode error_code_from(std::string_view name) {
@@ -123,17 +145,18 @@ void bind_job(Query& query, const Job& job) {
       .bind(19, job.finished)
       .bind(20, results_text(job.results))
       .bind(21, job.idempotency_key)
-      .bind(22, job.owner);
+      .bind(22, job.owner)
+      .bind(23, subscriber_text(job.spec.subscriber));
 }
 
 constexpr const char* kInsertJob =
     "INSERT INTO job (" CITYMESH_JOB_COLUMNS
     ") VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18,"
-    " ?19, ?20, ?21, ?22)";
+    " ?19, ?20, ?21, ?22, ?23)";
 constexpr const char* kUpdateJob =
     "UPDATE job SET (" CITYMESH_JOB_COLUMNS
     ") = (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19,"
-    " ?20, ?21, ?22) WHERE id = ?1";
+    " ?20, ?21, ?22, ?23) WHERE id = ?1";
 
 }  // namespace
 
@@ -167,6 +190,7 @@ Job read_job(const Query& row) {
         {file.at("output"), file.at("file_name"), file.at("media_type"), file.at("bytes")});
   job.idempotency_key = row.text(20);
   job.owner = row.text(21);
+  job.spec.subscriber = subscriber_from(row.text(22));
   return job;
 }
 
@@ -192,6 +216,9 @@ void insert_job(Connection& connection, const Job& job) {
   auto query = connection.query(kInsertJob);
   bind_job(query, job);
   query.run();
+  const auto& subscriber = job.spec.subscriber;
+  if (subscriber.success_uri.empty() && subscriber.failed_uri.empty()) return;
+  connection.query("UPDATE job SET callback_due = 0 WHERE id = ?1").bind(1, job.id).run();
 }
 
 void write_job(Connection& connection, Job& job) {

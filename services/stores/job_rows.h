@@ -12,7 +12,7 @@
 #define CITYMESH_JOB_COLUMNS                                                                      \
   "id, process, inputs, outputs, response_document, state, message, stage, done, total, percent," \
   " error_code, error_message, attempt, dismiss_requested, created, updated, started, finished,"  \
-  " results, idempotency_key, owner"
+  " results, idempotency_key, owner, subscriber"
 #define CITYMESH_JOB_FILTER                                                     \
   " FROM job WHERE (?1 = '[]' OR process IN (SELECT value FROM json_each(?1)))" \
   " AND (?2 = '[]' OR state IN (SELECT value FROM json_each(?2)))"

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/pipeline/pipeline.h"
+#include "services/offer/offer.h"
 #include "services/telemetry/log.h"
 #include "services/telemetry/metrics.h"
 
@@ -54,18 +54,9 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-std::string counted(const Progress& progress) {
+std::string counted(const Progress& progress, std::string_view unit) {
   if (progress.total == 0) return fmt::format("{}", progress.stage);
-  return fmt::format("{}: {} of {} buildings", progress.stage, progress.done, progress.total);
-}
-
-std::string summary(const RunOutcome& outcome) {
-  const auto& counts = outcome.report.counts;
-  if (counts.requested == 0) return "no building selected";
-  auto text = fmt::format("{} of {} buildings delivered", counts.delivered, counts.requested);
-  if (counts.merged > 0) text += fmt::format(", {} merged", counts.merged);
-  if (counts.dropped > 0) text += fmt::format(", {} dropped", counts.dropped);
-  return text;
+  return fmt::format("{}: {} of {} {}", progress.stage, progress.done, progress.total, unit);
 }
 
 /// The result files with their sizes as they are on disk.
@@ -104,13 +95,13 @@ struct WorkerPool::Impl {
 
   void claim_and_work(const std::stop_token& shutdown, const std::string& worker);
   void work(const Claim& claim, const std::stop_token& shutdown);
-  Result<RunOutcome> run_job(const Job& job, Run& run, std::filesystem::path& folder);
-  std::string_view finish(const Run& run, Result<RunOutcome> outcome,
+  Result<ProcessOutcome> run_job(const Job& job, Run& run, std::filesystem::path& folder);
+  std::string_view finish(const Run& run, std::string_view process, Result<ProcessOutcome> outcome,
                           const std::filesystem::path& folder);
   std::string_view hand_back(const Run& run);
   std::string_view close(const Run& run, JobState state, std::string message,
                          std::optional<Error> error, std::vector<ResultFile> files);
-  std::function<void(const Progress&)> progress_sink(Run& run);
+  std::function<void(const Progress&)> progress_sink(Run& run, std::string_view unit);
 
   void discard(const Claim& claim);
   void keep(const std::stop_token& stop);
@@ -228,7 +219,7 @@ void WorkerPool::Impl::work(const Claim& claim, const std::stop_token& shutdown)
   std::filesystem::path folder;
   auto outcome = run_job(*job, *run, folder);
   const auto error = outcome ? std::string() : outcome.error().message;
-  const auto ended = finish(*run, std::move(outcome), folder);
+  const auto ended = finish(*run, job->spec.process, std::move(outcome), folder);
   const auto seconds = seconds_since(run->started);
   metrics.job_ended(job->spec.process, ended, seconds);
   if (ended == to_string(JobState::Failed))
@@ -245,23 +236,20 @@ void WorkerPool::Impl::work(const Claim& claim, const std::stop_token& shutdown)
 }
 
 // The edge behind which nothing is thrown: whatever a job does, its worker goes on.
-Result<RunOutcome> WorkerPool::Impl::run_job(const Job& job, Run& run,
-                                             std::filesystem::path& folder) {
+Result<ProcessOutcome> WorkerPool::Impl::run_job(const Job& job, Run& run,
+                                                 std::filesystem::path& folder) {
   try {
     auto staged = results.stage(job.id, run.claim.attempt);
     if (!staged) return staged.error();
     folder = *staged;
-    auto opened = source();
-    if (!opened) return opened.error();
-
     RunContext context;
     context.stop = run.stop.get_token();
-    context.on_progress = progress_sink(run);
+    context.on_progress = progress_sink(run, progress_unit(job.spec.process));
     context.now_s = [] {
       return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
     };
     context.threads = std::max(1u, options.threads_per_job);
-    return citymesh::run(job.spec.process, job.spec.inputs_json, **opened, folder, context);
+    return run_offered(job.spec.process, job.spec.inputs_json, source, folder, context);
   } catch (const std::bad_alloc&) {
     return fail(ErrorCode::ResourceExhausted,
                 "not enough memory for this job; try a smaller selection");
@@ -273,7 +261,8 @@ Result<RunOutcome> WorkerPool::Impl::run_job(const Job& job, Run& run,
 }
 
 /// Ends the attempt in store and queue; returns the word for log and metrics.
-std::string_view WorkerPool::Impl::finish(const Run& run, Result<RunOutcome> outcome,
+std::string_view WorkerPool::Impl::finish(const Run& run, std::string_view process,
+                                          Result<ProcessOutcome> outcome,
                                           const std::filesystem::path& folder) {
   const auto& claim = run.claim;
   switch (run.reason.load()) {
@@ -307,13 +296,14 @@ std::string_view WorkerPool::Impl::finish(const Run& run, Result<RunOutcome> out
   if (auto committed = results.commit(claim.job_id, claim.attempt); !committed)
     return close(run, JobState::Failed, committed.error().message, committed.error(), {});
   for (const auto& [stage, seconds] : outcome->timings.stages_s)
-    metrics.stage_took(outcome->report.process, stage, seconds);
-  const auto& counts = outcome->report.counts;
+    metrics.stage_took(process, stage, seconds);
+  const auto& counts = outcome->buildings;
   metrics.buildings("delivered", counts.delivered);
   metrics.buildings("merged", counts.merged);
   metrics.buildings("dropped", counts.dropped);
-  for (const auto& [code, count] : outcome->report.issues) metrics.issues(code, count);
-  return close(run, JobState::Successful, summary(*outcome), std::nullopt, *std::move(files));
+  for (const auto& [code, count] : outcome->issues) metrics.issues(code, count);
+  return close(run, JobState::Successful, std::move(outcome->message), std::nullopt,
+               *std::move(files));
 }
 
 std::string_view WorkerPool::Impl::hand_back(const Run& run) {
@@ -368,13 +358,14 @@ std::string_view WorkerPool::Impl::close(const Run& run, JobState state, std::st
   return to_string(job->state);
 }
 
-std::function<void(const Progress&)> WorkerPool::Impl::progress_sink(Run& run) {
+std::function<void(const Progress&)> WorkerPool::Impl::progress_sink(Run& run,
+                                                                     std::string_view unit) {
   struct Seen {
     std::set<std::string, std::less<>> stages{};
     std::optional<Clock::time_point> stored{};
     int percent = 0;
   };
-  return [this, &run, seen = std::make_shared<Seen>()](const Progress& progress) {
+  return [this, &run, unit, seen = std::make_shared<Seen>()](const Progress& progress) {
     if (!seen->stages.contains(progress.stage)) {
       seen->stages.emplace(progress.stage);
       log.info(
@@ -391,7 +382,7 @@ std::function<void(const Progress&)> WorkerPool::Impl::progress_sink(Run& run) {
     const auto stored =
         jobs.set_progress(run.claim.job_id, run.claim.attempt,
                           {std::string(progress.stage), progress.done, progress.total},
-                          counted(progress), seen->percent);
+                          counted(progress, unit), seen->percent);
     if (!stored && stored.error().code == ErrorCode::FailedPrecondition)
       run.end(StopReason::LeaseLost);
   };

@@ -1,12 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 
 #include "core/base/result.h"
-#include "core/source/source.h"
 #include "services/jobs/stores.h"
+#include "services/worker/run_offered.h"
 
 namespace citymesh {
 
@@ -22,11 +21,9 @@ struct WorkerOptions {
   TimeMs progress_interval_ms = 200;  ///< least time between two stored progress reports
 };
 
-/// Opens what jobs read from; called once per job, on its worker thread.
-using SourceFactory = std::function<Result<std::unique_ptr<CitySource>>()>;
-
 /// Threads that claim jobs, run them and store their results. They keep nothing between jobs, and
-/// nothing that a job does ends its worker. The stores must outlive the pool.
+/// nothing that a job does ends its worker. The source is opened once per job, on its worker
+/// thread. The stores must outlive the pool.
 class WorkerPool {
  public:
   WorkerPool(JobStore& jobs, TaskQueue& queue, ResultStore& results, SourceFactory source, Log& log,

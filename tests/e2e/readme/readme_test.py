@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Runs the code blocks of the README, of the pages about REST and about clients, and of the Python client's README, as they stand,
-against a server of our own: only the two addresses and the place of the program are replaced.
+"""Runs the code blocks of the README, of the pages about REST, about echo and about clients, and of the Python client's README, as
+they stand, against a server of our own: only the two addresses and the place of the program are replaced.
 
     readme_test.py CITYMESH
 """
+import hmac
 import json
 import os
 import re
@@ -33,9 +34,9 @@ def python_with(modules):
 class Readme(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        blocks, cls.rest_blocks, cls.client_blocks, cls.package_blocks = (
+        blocks, cls.rest_blocks, cls.client_blocks, cls.package_blocks, cls.echo_blocks = (
             BLOCK.findall((ROOT / page).read_text(encoding="utf-8"))
-            for page in ("README.md", "docs/rest.md", "docs/clients.md", "clients/python/README.md"))
+            for page in ("README.md", "docs/rest.md", "docs/clients.md", "clients/python/README.md", "docs/processes/echo.md"))
         cls.run_block, cls.curl_block, cls.python_block, cls.stubs_block, cls.grpc_block = blocks
         cls.folder = Path(tempfile.mkdtemp(prefix="citymesh-readme-"))
         for name in ("tests", "proto", "clients"):
@@ -90,6 +91,10 @@ class Readme(unittest.TestCase):
         self.assertTrue((self.folder / "out/mitte/model.obj").exists())
         self.assertTrue((self.folder / "out/mitte/model.stl").exists())
 
+    def test_echo(self):
+        answer = json.loads(self.run_example(self.echo_blocks[0]))
+        self.assertEqual(answer, {"number": {"mediaType": "application/json", "value": 1.5}, "text": "hello"})
+
     def test_all_ways_give_the_same_mesh(self):
         self.assertIn("successful", self.run_example(self.curl_block))
         self.counts("out/curl/report.json")
@@ -105,8 +110,18 @@ class Readme(unittest.TestCase):
         self.assertIn("SUCCESSFUL", self.run_example(self.grpc_block, python))
         self.assertEqual(mesh, (self.folder / "out/grpc/model.obj").read_bytes())
 
+    def check_verification(self, text):
+        names = {}
+        exec(compile(text, "docs/rest.md", "exec"), names)
+        seconds = str(int(time.time()))
+        digest = hmac.new(b"secret", seconds.encode() + b".{}", "sha256").hexdigest()
+        self.assertTrue(names["is_genuine"](f"t={seconds},v1={digest}", b"{}", b"secret"))
+        self.assertFalse(names["is_genuine"](f"t={seconds},v1={digest}", b"{ }", b"secret"))
+        self.assertFalse(names["is_genuine"](f"t={int(seconds) - 1},v1={digest}", b"{}", b"secret"))
+
     def test_page_about_rest(self):
-        at_once, as_job, events, download = self.rest_blocks
+        at_once, as_job, events, verification, download = self.rest_blocks
+        self.check_verification(verification[1])
         report = json.loads(self.run_example(at_once))
         self.assertEqual(report["process"], "validate")
         self.assertGreater(report["counts"]["requested"], 0)

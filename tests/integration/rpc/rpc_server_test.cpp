@@ -6,9 +6,9 @@
 #include <thread>
 
 #include "citymesh/v1/jobs.grpc.pb.h"
-#include "core/processes/processes.h"
 #include "services/jobs/job_manager.h"
 #include "services/jobs/retention.h"
+#include "services/offer/offer.h"
 #include "services/rpc/server.h"
 #include "services/stores/embedded_store.h"
 #include "services/stores/folder_results.h"
@@ -330,10 +330,10 @@ TEST_F(RpcServerTest, ProcessesAreDescribedAsTheTableHasThem) {
   grpc::ClientContext context;
   v1::ProcessesReply reply;
   ASSERT_TRUE(stub_->Processes(&context, {}, &reply).ok());
-  ASSERT_EQ(reply.processes_size(), static_cast<int>(processes().size()));
+  ASSERT_EQ(reply.processes_size(), static_cast<int>(offered_processes().size()));
   for (int i = 0; i < reply.processes_size(); ++i) {
     const auto& told = reply.processes(i);
-    const auto& meant = processes()[static_cast<std::size_t>(i)];
+    const auto& meant = offered_processes()[static_cast<std::size_t>(i)];
     EXPECT_EQ(told.id(), meant.id);
     ASSERT_EQ(told.inputs_size(), static_cast<int>(meant.inputs.size()));
     for (int k = 0; k < told.inputs_size(); ++k) {

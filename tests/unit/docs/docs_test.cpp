@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/citymodel/issue.h"
-#include "core/processes/processes.h"
+#include "services/offer/offer.h"
 
 namespace citymesh {
 namespace {
@@ -75,7 +75,7 @@ std::string values_of(const OptionSpec& option) {
 }
 
 TEST(Docs, EveryProcessHasAPageWithItsInputsAndTheirDefaults) {
-  for (const auto& process : processes()) {
+  for (const auto& process : offered_processes()) {
     const auto page =
         std::filesystem::path(CITYMESH_DOCS) / "processes" / (std::string(process.id) + ".md");
     const auto rows = table(page, "name");
@@ -95,7 +95,7 @@ TEST(Docs, EveryProcessHasAPageWithItsInputsAndTheirDefaults) {
 TEST(Docs, TheListOfProcessesIsComplete) {
   const auto rows =
       table(std::filesystem::path(CITYMESH_DOCS) / "processes" / "README.md", "process");
-  EXPECT_EQ(rows.size(), processes().size());
+  EXPECT_EQ(rows.size(), offered_processes().size());
 }
 
 TEST(Docs, EveryIssueCodeHasAPage) {

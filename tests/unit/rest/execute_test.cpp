@@ -98,8 +98,19 @@ TEST(ExecuteRequest, NamesUnknownRepeatedAndWronglyTypedMembers) {
 TEST(ExecuteRequest, SaysWhatItDoesNotSupport) {
   EXPECT_THAT(message_for(R"({"inputs":{"bbox":{"href":"http://example.org/box.json"}}})"),
               HasSubstr("inputs by reference are not supported"));
-  EXPECT_THAT(message_for(R"({"subscriber":{"successUri":"http://example.org/"}})"),
-              HasSubstr("callbacks are not supported"));
+}
+
+TEST(ExecuteRequest, NamesItsSubscriber) {
+  const auto spec = decode_execute(
+      export_process(),
+      R"({"subscriber":{"successUri":"http://example.org/a","failedUri":"http://example.org/b"}})");
+  ASSERT_TRUE(spec) << spec.error().message;
+  EXPECT_EQ(spec->subscriber.success_uri, "http://example.org/a");
+  EXPECT_EQ(spec->subscriber.in_progress_uri, "");
+  EXPECT_EQ(spec->subscriber.failed_uri, "http://example.org/b");
+  for (const auto* wrong : {R"({"subscriber":1})", R"({"subscriber":{}})",
+                            R"({"subscriber":{"successUri":7}})", R"({"subscriber":{"uri":"x"}})"})
+    EXPECT_THAT(message_for(wrong), HasSubstr("subscriber")) << wrong;
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/processes/processes.h"
+#include "services/offer/offer.h"
 #include "tests/unit/rest/rest_api.h"
 
 namespace citymesh {
@@ -35,7 +35,7 @@ class RestExecution : public RestApi {
 };
 
 TEST_F(RestExecution, ProcessesDeclareHowTheyCanBeExecuted) {
-  for (const auto& process : processes()) {
+  for (const auto& process : offered_processes()) {
     const auto declared =
         document(get("/processes/" + std::string(process.id)))["jobControlOptions"];
     EXPECT_EQ(declared, process.async_only ? json({"async-execute", "dismiss"})

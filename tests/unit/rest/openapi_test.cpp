@@ -9,7 +9,7 @@
 #include <regex>
 #include <set>
 
-#include "core/processes/processes.h"
+#include "services/offer/offer.h"
 #include "tests/unit/rest/rest_api.h"
 
 namespace citymesh {
@@ -211,7 +211,7 @@ TEST_F(OpenApi, InputsMayBePlainOrQualified) {
 }
 
 TEST_F(OpenApi, ProcessesAreDescribedWithTheirOwnWaysOfExecution) {
-  for (const auto& process : processes()) {
+  for (const auto& process : offered_processes()) {
     const auto id = std::string(process.id);
     const auto& post = definition_["paths"]["/processes/" + id + "/execution"]["post"];
     EXPECT_EQ(post["responses"].contains("200"), !process.async_only) << id;

@@ -430,6 +430,7 @@ TEST_F(EmbeddedStoreTest, BringsADatabaseOfTheFirstVersionUpToDateWithItsJobs) {
     EXPECT_EQ(done->finished, 3000);
     EXPECT_EQ(done->results.at(0).file_name, "model.obj");
     EXPECT_EQ(done->idempotency_key, "");
+    EXPECT_TRUE(done->spec.subscriber.empty());
     EXPECT_EQ(*store_->count({}), 2u);
   }
   EXPECT_EQ(claimed().job_id, "00000000-0000-4000-8000-000000000002");
