@@ -99,7 +99,8 @@ Result<int> post(const Message& message, const PostOptions& options, const std::
   HeaderList headers;
   append(headers, "Content-Type: application/json");
   append(headers, "Expect:");
-  for (const auto& [name, value] : message.headers) append(headers, name + ": " + value);
+  for (const auto& [name, value] : message.headers)
+    append(headers, fmt::format("{}: {}", name, value));
 
   CURL* curl = handle.get();
   const auto set = [curl](CURLoption option, auto value) {
