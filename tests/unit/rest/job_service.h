@@ -57,9 +57,9 @@ class JobService {
     std::string output, name, media_type, content;
   };
 
-  /// The oldest waiting job becomes running.
+  /// The oldest waiting job becomes running. It is in the store a moment before it is in the queue.
   Claim start() {
-    auto claim = must(store_->claim("worker-of-the-test", 60'000, 0));
+    auto claim = must(store_->claim("worker-of-the-test", 60'000, 10'000));
     EXPECT_TRUE(claim.has_value());
     must(store_->update(claim->job_id, claim->attempt, [](Job& job) {
       job.state = JobState::Running;
