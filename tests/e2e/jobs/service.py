@@ -1,6 +1,7 @@
 """Runs `citymesh serve` for a test and talks to it. Python's standard library only."""
 import json
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -33,15 +34,21 @@ class Answer:
         return json.loads(self.body)
 
 
+def limit_files(max_bytes):
+    """What fails is as with a full disk, without one."""
+    return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (max_bytes, max_bytes))
+
+
 class Service:
     """The program in a process of its own; the ports are those it found free."""
 
-    def __init__(self, data, state, *options):
+    def __init__(self, data, state, *options, max_file_bytes=None):
         self.log = Path(state).with_suffix(".log")
         command = [PROGRAM, "serve", "--data", str(data), "--state", str(state), "--listen", "127.0.0.1:0",
                    "--grpc", "127.0.0.1:0", *options]
         with open(self.log, "wb") as log:
-            self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT)
+            self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT,
+                                            preexec_fn=limit_files(max_file_bytes) if max_file_bytes else None)
         event = self._wait_for("listening")
         self.url, self.grpc = event["rest"], event["grpc"]
 
