@@ -29,7 +29,8 @@ TEST_F(ConformanceClasses, AreDeclared) {
 TEST_F(ConformanceProcessDescription, HasInputsAndOutputsWithSchemas) {
   const json control = {"sync-execute", "async-execute", "dismiss"};
   const json transmission = {"value", "reference"};
-  for (const auto& process : document("/processes")["processes"]) {
+  const json processes = document("/processes")["processes"];
+  for (const auto& process : processes) {
     const auto described = document(*link(process, "self"));
     EXPECT_TRUE(described["id"].is_string());
     EXPECT_TRUE(described["version"].is_string());
@@ -157,7 +158,8 @@ TEST_F(ConformanceJobs, ListIsPagedByLimitAndItsNextLink) {
 }
 
 TEST_F(ConformanceJobs, DismissEndsAJobAndSaysSo) {
-  for (const auto& process : document("/processes")["processes"])
+  const json processes = document("/processes")["processes"];
+  for (const auto& process : processes)
     EXPECT_NE(std::find(process["jobControlOptions"].begin(), process["jobControlOptions"].end(),
                         "dismiss"),
               process["jobControlOptions"].end());

@@ -80,7 +80,8 @@ TEST_F(ConformanceCore, ProcessListIsCutByLimit) {
 }
 
 TEST_F(ConformanceCore, EveryProcessOfTheListCanBeGot) {
-  for (const auto& process : document("/processes")["processes"]) {
+  const json processes = document("/processes")["processes"];
+  for (const auto& process : processes) {
     const auto described = document(*link(process, "self"));
     EXPECT_EQ(described["id"], process["id"]);
     EXPECT_TRUE(link(described, std::string(kOgc) + "execute"));
