@@ -70,6 +70,7 @@ RestOptions rest_options(const ServeOptions& options, const Access& access) {
   rest.host = options.listen.host;
   rest.port = options.listen.port;
   rest.public_url = options.public_url;
+  rest.cors_allow_origin = options.cors_allow_origin;
   rest.max_body_bytes = options.max_body_bytes;
   rest.max_connections = options.max_connections;
   rest.max_client_connections = options.max_client_connections;

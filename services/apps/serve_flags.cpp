@@ -98,6 +98,10 @@ void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> r
   add("--tls_key", options.tls_key, "PEM file with the key of the certificate")->type_name("FILE");
   add("--trusted_proxies", options.trusted_proxies,
       "networks by comma whose Forwarded and X-Forwarded headers are believed");
+  add("--cors_allow_origin", options.cors_allow_origin,
+      "web pages of other origins that may use the REST API in a browser: * for all, or origins by "
+      "comma")
+      ->type_name("LIST");
   command.add_flag("--insecure", options.insecure,
                    "listen on the network although everybody may do everything");
   add("--callback_secret", options.callback_secret,

@@ -28,6 +28,35 @@ bool knows_clients(const ServeOptions& options) {
   return !options.api_keys.empty() || !options.oidc_jwks_file.empty();
 }
 
+/// As browsers send it: no path and no slash at the end, small letters, no port that goes without
+/// saying.
+bool is_web_origin(std::string_view text) {
+  const bool secure = text.starts_with("https://");
+  if (!secure && !text.starts_with("http://")) return false;
+  const auto host = text.substr(text.find("://") + 3);
+  return !host.empty() && !host.ends_with(secure ? ":443" : ":80") &&
+         std::ranges::all_of(host, [](char c) {
+           return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ||
+                  std::string_view("-._:[]").find(c) != std::string_view::npos;
+         });
+}
+
+Result<void> check_web_origins(std::string_view list) {
+  if (list == "*") return {};
+  while (!list.empty()) {
+    const auto comma = std::min(list.find(','), list.size());
+    auto origin = list.substr(0, comma);
+    list.remove_prefix(std::min(comma + 1, list.size()));
+    while (origin.starts_with(' ')) origin.remove_prefix(1);
+    while (origin.ends_with(' ')) origin.remove_suffix(1);
+    if (!is_web_origin(origin))
+      return wrong("--cors_allow_origin", fmt::format("'{}'", origin),
+                   "* or origins by comma as browsers send them, for example "
+                   "https://portal.example or http://localhost:3000");
+  }
+  return {};
+}
+
 Result<void> check_access(const ServeOptions& options) {
   const bool tokens = !options.oidc_jwks_file.empty();
   for (const auto& [name, value] : {std::pair("--oidc_issuer", options.oidc_issuer),
@@ -139,6 +168,7 @@ Result<void> check(const ServeOptions& options) {
   const auto& url = options.public_url;
   if (!url.empty() && !url.starts_with("http://") && !url.starts_with("https://"))
     return wrong("--public_url", url, "a URL that starts with http:// or https://");
+  if (auto checked = check_web_origins(options.cors_allow_origin); !checked) return checked;
   return check_access(options);
 }
 

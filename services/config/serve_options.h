@@ -39,6 +39,8 @@ struct ServeOptions {
   std::filesystem::path tls_key{};
   bool insecure = false;          ///< everybody on the network may do everything, and is meant to
   std::string trusted_proxies{};  ///< networks whose forwarded headers are believed
+  /// Web pages of other origins that may use the REST API: `*`, or origins by comma; empty: none.
+  std::string cors_allow_origin{};
 
   std::filesystem::path callback_secret{};  ///< file whose content signs messages to subscribers
   bool allow_private_callbacks = false;     ///< subscribers may also be in the own network

@@ -21,14 +21,6 @@
 namespace citymesh {
 namespace {
 
-constexpr std::string_view kAllowedHeaders =
-    "Accept, Authorization, Content-Type, Idempotency-Key, If-Match, If-None-Match, If-Range, "
-    "Last-Event-ID, Prefer, Range, X-API-Key";
-constexpr std::string_view kExposedHeaders =
-    "Location, Content-Location, Link, Preference-Applied, Content-Disposition, ETag, "
-    "Content-Range, "
-    "Accept-Ranges, Retry-After, WWW-Authenticate";
-
 /// Matches `/jobs/{id}` against segments; the values of the braces, or nothing.
 std::optional<std::vector<std::string>> match(std::string_view pattern,
                                               const std::vector<std::string>& segments) {
@@ -80,7 +72,10 @@ const Api::Route Api::kRoutes[] = {
 };
 
 Api::Api(JobManager& jobs, Metrics& metrics, ApiOptions options)
-    : jobs_(jobs), metrics_(metrics), options_(std::move(options)) {
+    : jobs_(jobs),
+      metrics_(metrics),
+      options_(std::move(options)),
+      cors_(options_.cors_allow_origin) {
   while (options_.public_url.ends_with('/')) options_.public_url.pop_back();
 }
 
@@ -168,9 +163,7 @@ Response Api::dispatch(const Request& request, std::string_view& route) const {
   Response response;
   if (call.method == "OPTIONS") {
     response.status = 204;
-    response.headers.set("Access-Control-Allow-Methods", allowed);
-    response.headers.set("Access-Control-Allow-Headers", std::string(kAllowedHeaders));
-    response.headers.set("Access-Control-Max-Age", "86400");
+    cors_.allow_sending(request.headers, allowed, response.headers);
   } else {
     response = problem_response(
         problems::kMethodNotAllowed,
@@ -184,6 +177,13 @@ Response Api::dispatch(const Request& request, std::string_view& route) const {
 /// Finds out whose call it is; the answer when that client may not make it.
 std::optional<Response> Api::refusal(const Route& route, const std::string& address,
                                      Call& call) const {
+  if (route.method != "GET" && !cors_.may_change(call.request.headers, call.base))
+    return problem_response(
+        problem_kind(ErrorCode::PermissionDenied),
+        fmt::format("a page of '{}' may not do this, expected one of the origins that "
+                    "--cors_allow_origin names",
+                    call.request.headers.get("Origin")),
+        call.accept);
   if (route.needs == Role::None) return std::nullopt;
   const auto& headers = call.request.headers;
   auto client =
@@ -214,9 +214,7 @@ void Api::add_common_headers(const Request& request, Response& response) const {
   headers.add("Vary", "Accept");
   // States and lists change from one moment to the next.
   if (!headers.has("Cache-Control")) headers.set("Cache-Control", "no-store");
-  if (options_.cors_allow_origin.empty() || !request.headers.has("Origin")) return;
-  headers.set("Access-Control-Allow-Origin", options_.cors_allow_origin);
-  headers.set("Access-Control-Expose-Headers", std::string(kExposedHeaders));
+  cors_.allow_reading(request.headers, headers);
 }
 
 Response Api::landing(const Call& call) const {

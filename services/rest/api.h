@@ -9,14 +9,15 @@
 
 #include "services/access/access.h"
 #include "services/jobs/job_manager.h"
+#include "services/rest/cors.h"
 #include "services/rest/message.h"
 #include "services/telemetry/metrics.h"
 
 namespace citymesh {
 
 struct ApiOptions {
-  std::string public_url{};  ///< base of all links; empty: http:// and the request's Host
-  std::string cors_allow_origin = "*";
+  std::string public_url{};         ///< base of all links; empty: http:// and the request's Host
+  std::string cors_allow_origin{};  ///< see Cors
   std::uint64_t max_inline_bytes = 16 << 20;
   double sync_wait_s = 30;  ///< how long a synchronous execution is waited for; 0: none is
   /// Who may do what; must outlive the API.
@@ -84,6 +85,7 @@ class Api {
   JobManager& jobs_;
   Metrics& metrics_;
   ApiOptions options_;
+  Cors cors_;
 };
 
 }  // namespace citymesh

@@ -34,12 +34,12 @@ struct RestOptions {
   /// Store and result files are read here, never on an I/O thread. Most of them wait for the disk,
   /// and what waits together is committed together.
   unsigned handler_threads = 32;
-  double idle_timeout_s = 60;    ///< of an open connection between two requests
-  double header_timeout_s = 10;  ///< from a header's first byte to its last; of TLS's greeting
-  double body_timeout_s = 60;    ///< until a request's body is complete
-  double write_timeout_s = 60;   ///< without any progress of a response
-  double drain_timeout_s = 5;    ///< responses under way get this long when stopping
-  std::string cors_allow_origin = "*";  ///< empty: no CORS headers
+  double idle_timeout_s = 60;       ///< of an open connection between two requests
+  double header_timeout_s = 10;     ///< from a header's first byte to its last; of TLS's greeting
+  double body_timeout_s = 60;       ///< until a request's body is complete
+  double write_timeout_s = 60;      ///< without any progress of a response
+  double drain_timeout_s = 5;       ///< responses under way get this long when stopping
+  std::string cors_allow_origin{};  ///< see Cors
   TlsFiles tls{};
   const Access* access = nullptr;  ///< who may do what, outlives the server; null: everybody all
 };

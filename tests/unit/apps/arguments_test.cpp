@@ -127,6 +127,24 @@ TEST(ServeOptions, NameTheSettingThatCannotBeUsed) {
   EXPECT_THAT(check(options).error().message, HasSubstr("--lease_s is -1"));
 }
 
+TEST(ServeOptions, WebOriginsAreWhatBrowsersSend) {
+  const TempFolder folder;
+  ServeOptions options;
+  options.data = folder.path();
+  for (const auto* list : {"", "*", "https://portal.example", "http://localhost:3000",
+                           "https://a.example, http://[::1]:8000"}) {
+    options.cors_allow_origin = list;
+    EXPECT_TRUE(check(options)) << list;
+  }
+  for (const auto* list :
+       {"portal.example", "https://portal.example/", "https://Portal.example", "https://",
+        "https://*.example", "null", "*,https://a.example", "https://a.example:443", "ftp://a"}) {
+    options.cors_allow_origin = list;
+    ASSERT_FALSE(check(options)) << list;
+    EXPECT_THAT(check(options).error().message, HasSubstr("--cors_allow_origin"));
+  }
+}
+
 TEST(ServeOptions, TheNetworkIsServedWithAuthenticationOrWhenThatIsMeantOnly) {
   const TempFolder folder;
   ServeOptions options;

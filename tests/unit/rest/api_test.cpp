@@ -458,20 +458,6 @@ TEST_F(RestApi, QueryParameterOverridesTheAcceptHeader) {
   EXPECT_THAT(detail(get("/?f=xml"), 400), HasSubstr("expected html or json"));
 }
 
-TEST_F(RestApi, OtherOriginsMayReadTheHeadersThatTheJobCycleNeeds) {
-  const auto response = get("/", {{"Origin", "https://portal.example"}});
-  EXPECT_EQ(response.headers.get("Access-Control-Allow-Origin"), "*");
-  for (const auto* name : {"Location", "Link", "Preference-Applied", "Content-Disposition"})
-    EXPECT_THAT(response.headers.get("Access-Control-Expose-Headers"), HasSubstr(name));
-
-  const auto preflight =
-      send("OPTIONS", kExecution, {},
-           {{"Origin", "https://portal.example"}, {"Access-Control-Request-Method", "POST"}});
-  EXPECT_EQ(preflight.status, 204);
-  EXPECT_THAT(preflight.headers.get("Access-Control-Allow-Methods"), HasSubstr("POST"));
-  EXPECT_THAT(preflight.headers.get("Access-Control-Allow-Headers"), HasSubstr("Content-Type"));
-}
-
 TEST_F(RestApi, HealthReadinessAndMetricsAreServed) {
   EXPECT_EQ(text(get("/healthz")), "ok\n");
   EXPECT_EQ(text(get("/readyz")), "ready\n");
