@@ -22,6 +22,7 @@ if(CITYMESH_SERVICES)
   find_package(CURL REQUIRED)                  # sends callbacks
   find_package(SQLite3 REQUIRED)               # embedded job store; catalogue with an R*Tree
   pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)  # catalogue: has a file changed?
+  pkg_check_modules(LIBPQ REQUIRED IMPORTED_TARGET libpq)  # reads 3DCityDB
   find_package(spdlog CONFIG REQUIRED)         # JSON log lines
   find_package(prometheus-cpp CONFIG REQUIRED) # metrics text format
   find_package(CLI11 CONFIG REQUIRED)          # command line with --help

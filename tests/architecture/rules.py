@@ -137,7 +137,7 @@ def every_stage_has_its_door(tree):
 
 
 LIBRARY = re.compile(r"citymesh_library\(\s*(\w+)([^)]*)\)")
-KEYWORDS = ("SOURCES", "USES", "PRIVATE_USES", "KIND", "TIMEOUT", "CORPUS")
+KEYWORDS = ("SOURCES", "USES", "PRIVATE_USES", "KIND", "TIMEOUT", "CORPUS", "WHOLE")
 
 
 def arguments_of(text):
