@@ -65,7 +65,7 @@ AccessOptions access_options(const ServeOptions& options) {
           .trusted_proxies = options.trusted_proxies};
 }
 
-RestOptions rest_options(const ServeOptions& options, const Access& access) {
+RestOptions rest_options(const ServeOptions& options, const Access& access, Log& log) {
   RestOptions rest;
   rest.host = options.listen.host;
   rest.port = options.listen.port;
@@ -80,6 +80,7 @@ RestOptions rest_options(const ServeOptions& options, const Access& access) {
   rest.body_timeout_s = options.body_timeout_s;
   rest.tls = {options.tls_certificate, options.tls_key};
   rest.access = &access;
+  rest.log = &log;
   return rest;
 }
 
@@ -93,14 +94,15 @@ Result<SenderOptions> sender_options(const ServeOptions& options) {
   return sender;
 }
 
-RpcOptions rpc_options(const ServeOptions& options, const Access& access) {
+RpcOptions rpc_options(const ServeOptions& options, const Access& access, Log& log) {
   return {.host = options.grpc.host,
           .port = options.grpc.port,
           .max_message_bytes = static_cast<int>(options.max_body_bytes),
           .max_watches = options.max_watches,
           .tls_certificate = options.tls_certificate,
           .tls_key = options.tls_key,
-          .access = &access};
+          .access = &access,
+          .log = &log};
 }
 
 /// Does `work` now and then until it is stopped.
@@ -247,8 +249,8 @@ Result<void> serve(const ServeOptions& options) {
        }});
   CallbackSender callbacks(**store, callback_json, log, *std::move(sending));
   WorkerPool workers(**store, **store, **results, *source, log, metrics, worker_options(options));
-  RestServer rest(jobs, metrics, rest_options(options, **access));
-  RpcServer rpc(jobs, metrics, rpc_options(options, **access));
+  RestServer rest(jobs, metrics, rest_options(options, **access, log));
+  RpcServer rpc(jobs, metrics, rpc_options(options, **access, log));
 
   const auto rest_port = rest.start();
   if (!rest_port) return rest_port.error();

@@ -101,7 +101,8 @@ struct CallbackSender::Impl {
       log.info("callback_sent", {{"job_id", job.id},
                                  {"to", shown_uri(uri_for(job))},
                                  {"state", to_string(job.state)},
-                                 {"attempt", attempt}});
+                                 {"attempt", attempt},
+                                 {"trace_id", job.trace_id}});
       return;
     }
     log.warning("callback_failed", {{"job_id", job.id},
@@ -110,7 +111,8 @@ struct CallbackSender::Impl {
                                     {"attempt", attempt},
                                     {"last", is_last},
                                     {"error", status ? fmt::format("the answer was {}", *status)
-                                                     : status.error().message}});
+                                                     : status.error().message},
+                                    {"trace_id", job.trace_id}});
   }
 
   /// False when nothing was due.

@@ -86,7 +86,8 @@ struct Job {
   /// By which its client knows the request again when it repeats it; empty: never. No two jobs of
   /// one owner have the same.
   std::string idempotency_key{};
-  std::string owner{};  ///< the client it belongs to; empty: nobody in particular
+  std::string owner{};     ///< the client it belongs to; empty: nobody in particular
+  std::string trace_id{};  ///< of the request that made it, for the log
 };
 
 struct JobFilter {

@@ -73,7 +73,8 @@ JobManager::JobManager(JobStore& jobs, TaskQueue& queue, ResultStore& results,
   });
 }
 
-Result<Job> JobManager::submit(JobSpec spec, std::string idempotency_key, std::string owner) {
+Result<Job> JobManager::submit(JobSpec spec, std::string idempotency_key, std::string owner,
+                               std::string trace_id) {
   const auto* process = find_offered(spec.process);
   if (process == nullptr)
     return fail(ErrorCode::NotFound, fmt::format("process '{}' does not exist; available: {}",
@@ -93,6 +94,7 @@ Result<Job> JobManager::submit(JobSpec spec, std::string idempotency_key, std::s
   job.created = job.updated = now_ms();
   job.idempotency_key = std::move(idempotency_key);
   job.owner = std::move(owner);
+  job.trace_id = std::move(trace_id);
 
   if (!job.idempotency_key.empty()) {
     auto first = repeated(job);

@@ -41,7 +41,8 @@ class JobManager {
   /// With an idempotency key a repeated request of the same owner gets the job of the first one,
   /// also when that has ended. AlreadyExists when the first one asked for something else. The key
   /// is free again once the job is forgotten.
-  Result<Job> submit(JobSpec spec, std::string idempotency_key = {}, std::string owner = {});
+  Result<Job> submit(JobSpec spec, std::string idempotency_key = {}, std::string owner = {},
+                     std::string trace_id = {});
   Result<Job> get(const std::string& id);
   Result<std::vector<Job>> list(const JobFilter& filter);
   Result<std::uint64_t> count(const JobFilter& filter);

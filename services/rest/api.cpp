@@ -17,6 +17,8 @@
 #include "services/rest/pages.h"
 #include "services/rest/problem.h"
 #include "services/rest/processes.h"
+#include "services/telemetry/log.h"
+#include "services/telemetry/trace.h"
 
 namespace citymesh {
 namespace {
@@ -80,23 +82,23 @@ Api::Api(JobManager& jobs, Metrics& metrics, ApiOptions options)
 }
 
 Response Api::handle(const Request& request) const {
-  const auto start = std::chrono::steady_clock::now();
-  std::string_view route = "none";
+  Record record{.method = request.method,
+                .trace_id = trace_id_of(request.headers.get("traceparent"))};
   Response response;
   try {
-    response = dispatch(request, route);
+    response = dispatch(request, record);
   } catch (const std::exception& error) {
     response = unexpected(error, request);
   }
   add_common_headers(request, response);
   if (!response.follow || response.follow->streams) {
-    count(request, route, response.status, start);
+    tell(record, response.status);
     return response;
   }
   // What had to wait gets the same finish when it comes.
   const auto bare =
       std::make_shared<const Request>(Request{request.method, request.target, request.headers, {}});
-  response.follow->step = [this, bare, route, start,
+  response.follow->step = [this, bare, record = std::move(record),
                            step = std::move(response.follow->step)](bool last) {
     FollowStep next;
     try {
@@ -106,24 +108,30 @@ Response Api::handle(const Request& request) const {
     }
     if (next.answer) {
       add_common_headers(*bare, *next.answer);
-      count(*bare, route, next.answer->status, start);
+      tell(record, next.answer->status);
     }
     return next;
   };
   return response;
 }
 
-void Api::count(const Request& request, std::string_view route, int status,
-                std::chrono::steady_clock::time_point start) const {
+void Api::tell(const Record& record, int status) const {
   const bool known_method = std::ranges::any_of(
-      kRoutes, [&](const Route& known) { return known.method == request.method; });
-  metrics_.http_request(known_method || request.method == "HEAD" || request.method == "OPTIONS"
-                            ? request.method
-                            : "other",
-                        route, status, seconds_since(start));
+      kRoutes, [&](const Route& known) { return known.method == record.method; });
+  const std::string_view method =
+      known_method || record.method == "HEAD" || record.method == "OPTIONS" ? record.method
+                                                                            : "other";
+  const auto seconds = seconds_since(record.start);
+  metrics_.http_request(method, record.route, status, seconds);
+  if (options_.log != nullptr)
+    options_.log->debug("request", {{"method", method},
+                                    {"route", record.route},
+                                    {"status", status},
+                                    {"seconds", seconds},
+                                    {"trace_id", record.trace_id}});
 }
 
-Response Api::dispatch(const Request& request, std::string_view& route) const {
+Response Api::dispatch(const Request& request, Record& record) const {
   const auto accept = request.headers.get("Accept");
   auto target = parse_target(request.target);
   if (!target)
@@ -142,12 +150,13 @@ Response Api::dispatch(const Request& request, std::string_view& route) const {
             *std::move(target),
             origin->base,
             {},
-            accept};
+            accept,
+            record.trace_id};
   std::string allowed;
   for (const auto& candidate : kRoutes) {
     auto values = match(candidate.pattern, call.target.segments);
     if (!values) continue;
-    route = candidate.pattern;
+    record.route = candidate.pattern;
     if (candidate.method == call.method) {
       if (auto refused = refusal(candidate, origin->client, call)) return *std::move(refused);
       call.values = *std::move(values);

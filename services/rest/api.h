@@ -15,6 +15,8 @@
 
 namespace citymesh {
 
+class Log;
+
 struct ApiOptions {
   std::string public_url{};         ///< base of all links; empty: http:// and the request's Host
   std::string cors_allow_origin{};  ///< see Cors
@@ -22,6 +24,7 @@ struct ApiOptions {
   double sync_wait_s = 30;  ///< how long a synchronous execution is waited for; 0: none is
   /// Who may do what; must outlive the API.
   const Access* access = &Access::for_everybody();
+  Log* log = nullptr;  ///< must outlive the API; null: nothing is logged
 };
 
 /// The resources of OGC API - Processes 1.0 as a function from request to response; it knows no
@@ -47,6 +50,7 @@ class Api {
     std::string base;                 ///< scheme, host and prefix of links, no slash at the end
     std::vector<std::string> values;  ///< what the pattern's braces stand for
     std::string accept;
+    std::string trace_id;
     Client client{};
   };
   struct Route {
@@ -57,10 +61,17 @@ class Api {
   };
   static const Route kRoutes[];
 
-  Response dispatch(const Request& request, std::string_view& route) const;
+  /// What is told of a request when it has been answered.
+  struct Record {
+    std::string method{};
+    std::string_view route = "none";  ///< its pattern
+    std::string trace_id{};
+    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+  };
+
+  Response dispatch(const Request& request, Record& record) const;
   std::optional<Response> refusal(const Route& route, const std::string& address, Call& call) const;
-  void count(const Request& request, std::string_view route, int status,
-             std::chrono::steady_clock::time_point start) const;
+  void tell(const Record& record, int status) const;
   void add_common_headers(const Request& request, Response& response) const;
 
   Response landing(const Call& call) const;

@@ -11,6 +11,7 @@
 #include "services/rest/execute.h"
 #include "services/rest/problem.h"
 #include "services/rest/results.h"
+#include "services/telemetry/log.h"
 
 namespace citymesh {
 namespace {
@@ -96,12 +97,18 @@ Response Api::execute(const Call& call) const {
   const auto key = idempotency_key(call.request.headers);
   if (!key)
     return problem_response(problem_kind(key.error().code), key.error().message, call.accept);
-  const auto job = jobs_.submit(*std::move(spec), *key, call.client.name);
+  const auto job = jobs_.submit(*std::move(spec), *key, call.client.name, call.trace_id);
   if (!job)
     return problem_response(job.error().code == ErrorCode::AlreadyExists
                                 ? problems::kIdempotencyKeyUsed
                                 : problem_kind(job.error().code),
                             job.error().message, call.accept);
+
+  if (options_.log != nullptr)
+    options_.log->info("job_accepted", {{"job_id", job->id},
+                                        {"process", process->id},
+                                        {"owner", job->owner},
+                                        {"trace_id", call.trace_id}});
 
   auto mode = mode_of(*process, call.request.headers.get("Prefer"), options_.sync_wait_s);
   if (mode.wait_s <= 0) return accepted(call.base, *job, mode.applied_to_job);

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::string_view kSendableHeaders =
     "Accept, Authorization, Content-Type, Idempotency-Key, If-Match, If-None-Match, If-Range, "
-    "Last-Event-ID, Prefer, Range, X-API-Key";
+    "Last-Event-ID, Prefer, Range, traceparent, X-API-Key";
 constexpr std::string_view kReadableHeaders =
     "Location, Content-Location, Link, Preference-Applied, Content-Disposition, ETag, "
     "Content-Range, Accept-Ranges, Retry-After, WWW-Authenticate";

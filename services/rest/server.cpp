@@ -47,8 +47,8 @@ const Access& access_of(const RestOptions& options) {
 }
 
 ApiOptions api_options(const RestOptions& options) {
-  return {options.public_url, options.cors_allow_origin, options.max_inline_bytes,
-          options.sync_wait_s, &access_of(options)};
+  return {options.public_url,  options.cors_allow_origin, options.max_inline_bytes,
+          options.sync_wait_s, &access_of(options),       options.log};
 }
 
 }  // namespace

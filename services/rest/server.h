@@ -11,6 +11,7 @@ namespace citymesh {
 
 class Access;
 class JobManager;
+class Log;
 class Metrics;
 
 /// PEM files. Empty: no TLS.
@@ -42,6 +43,7 @@ struct RestOptions {
   std::string cors_allow_origin{};  ///< see Cors
   TlsFiles tls{};
   const Access* access = nullptr;  ///< who may do what, outlives the server; null: everybody all
+  Log* log = nullptr;              ///< outlives the server; null: nothing is logged
 };
 
 /// OGC API - Processes 1.0 over HTTP/1.1. Translates to and from JobManager; keeps no state of its

@@ -20,14 +20,15 @@ std::string address_of(std::string_view peer) {
   return std::string(peer);
 }
 
-std::string last_of(const std::multimap<std::string, std::string>& metadata, const char* name) {
+}  // namespace
+
+std::string last_of(const std::multimap<std::string, std::string>& metadata,
+                    const std::string& name) {
   const auto end = metadata.upper_bound(name);
   if (end == metadata.begin()) return {};
   const auto last = std::prev(end);
   return last->first == name ? last->second : std::string{};
 }
-
-}  // namespace
 
 Credentials credentials_of(const std::string& peer,
                            const std::multimap<std::string, std::string>& metadata,

@@ -23,7 +23,9 @@
 #include "services/offer/offer.h"
 #include "services/rpc/caller.h"
 #include "services/rpc/messages.h"
+#include "services/telemetry/log.h"
 #include "services/telemetry/metrics.h"
+#include "services/telemetry/trace.h"
 
 namespace citymesh {
 namespace {
@@ -98,20 +100,32 @@ std::multimap<std::string, std::string> texts(const Metadata& metadata) {
   return all;
 }
 
+/// Who makes a call, and in which trace.
+struct Caller : Client {
+  std::string trace_id{};
+};
+
 class JobsService final : public v1::Jobs::Service {
  public:
   JobsService(JobManager& jobs, Metrics& metrics, const RpcOptions& options)
       : jobs_(jobs),
         metrics_(metrics),
         access_(options.access != nullptr ? *options.access : Access::for_everybody()),
+        log_(options.log),
         max_watches_(options.max_watches) {}
 
   void stop() { stopping_ = true; }
 
   grpc::Status Submit(grpc::ServerContext* context, const v1::SubmitRequest* request,
                       v1::Job* answer) override {
-    return served(*context, "Submit", Role::Submit, [&](const Client& client) {
-      return reply(jobs_.submit(to_spec(*request), {}, client.name), answer);
+    return served(*context, "Submit", Role::Submit, [&](const Caller& caller) {
+      const auto job = jobs_.submit(to_spec(*request), {}, caller.name, caller.trace_id);
+      if (job && log_ != nullptr)
+        log_->info("job_accepted", {{"job_id", job->id},
+                                    {"process", job->spec.process},
+                                    {"owner", job->owner},
+                                    {"trace_id", caller.trace_id}});
+      return reply(job, answer);
     });
   }
 
@@ -163,11 +177,14 @@ class JobsService final : public v1::Jobs::Service {
   grpc::Status served(const grpc::ServerContext& context, std::string_view method, Role needed,
                       const Call& call) {
     const auto start = Clock::now();
+    const auto metadata = texts(context.client_metadata());
+    Caller caller;
+    caller.trace_id = trace_id_of(last_of(metadata, "traceparent"));
     auto status = [&]() -> grpc::Status {
       try {
-        if (needed == Role::None) return call(Client{});
-        const auto client = access_.identify(credentials_of(
-            context.peer(), texts(context.client_metadata()), access_.trusted_proxies()));
+        if (needed == Role::None) return call(caller);
+        const auto client =
+            access_.identify(credentials_of(context.peer(), metadata, access_.trusted_proxies()));
         if (!client) return {grpc::StatusCode::UNAUTHENTICATED, client.error().message};
         if (client->name.empty() && client->role == Role::None)
           return {grpc::StatusCode::UNAUTHENTICATED,
@@ -175,13 +192,20 @@ class JobsService final : public v1::Jobs::Service {
                   "or (API key) `x-api-key: …`"};
         if (const auto allowed = require(*client, needed); !allowed)
           return to_status(allowed.error());
-        return call(*client);
+        static_cast<Client&>(caller) = *client;
+        return call(caller);
       } catch (const std::exception& error) {
         return {grpc::StatusCode::INTERNAL, error.what()};
       }
     }();
-    metrics_.rpc_request(method, code_name(status.error_code()),
-                         std::chrono::duration<double>(Clock::now() - start).count());
+    const auto code = code_name(status.error_code());
+    const auto seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    metrics_.rpc_request(method, code, seconds);
+    if (log_ != nullptr)
+      log_->debug("call", {{"method", method},
+                           {"code", code},
+                           {"seconds", seconds},
+                           {"trace_id", caller.trace_id}});
     return status;
   }
 
@@ -277,6 +301,7 @@ class JobsService final : public v1::Jobs::Service {
   JobManager& jobs_;
   Metrics& metrics_;
   const Access& access_;
+  Log* const log_;
   const std::uint32_t max_watches_;
   std::atomic<std::uint32_t> watches_ = 0;
   std::atomic<bool> stopping_ = false;

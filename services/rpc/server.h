@@ -11,6 +11,7 @@ namespace citymesh {
 
 class Access;
 class JobManager;
+class Log;
 class Metrics;
 
 struct RpcOptions {
@@ -21,6 +22,7 @@ struct RpcOptions {
   std::filesystem::path tls_certificate{};  ///< PEM, read again when it changes; empty: no TLS
   std::filesystem::path tls_key{};
   const Access* access = nullptr;  ///< who may do what, outlives the server; null: everybody all
+  Log* log = nullptr;              ///< outlives the server; null: nothing is logged
 };
 
 /// The service Jobs of proto/citymesh/v1 with health and reflection. Translates to and from

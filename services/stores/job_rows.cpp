@@ -102,18 +102,23 @@ std::string results_text(const std::vector<ResultFile>& files) {
   return dump(results);
 }
 
-std::string subscriber_text(const Subscriber& subscriber) {
-  if (subscriber.empty()) return "{}";
-  return dump({{"success", subscriber.success_uri},
+/// What a request says beside what it wants: whom to tell, and the trace that it belongs to.
+std::string context_text(const Job& job) {
+  auto context = json::object();
+  if (const auto& subscriber = job.spec.subscriber; !subscriber.empty())
+    context = {{"success", subscriber.success_uri},
                {"in_progress", subscriber.in_progress_uri},
                {"failed", subscriber.failed_uri},
-               {"base", subscriber.base}});
+               {"base", subscriber.base}};
+  if (!job.trace_id.empty()) context["trace_id"] = job.trace_id;
+  return dump(context);
 }
 
-Subscriber subscriber_from(const std::string& text) {
+void read_context(const std::string& text, Job& job) {
   const auto stored = json::parse(text);
-  return {stored.value("success", ""), stored.value("in_progress", ""), stored.value("failed", ""),
-          stored.value("base", "")};
+  job.spec.subscriber = {stored.value("success", ""), stored.value("in_progress", ""),
+                         stored.value("failed", ""), stored.value("base", "")};
+  job.trace_id = stored.value("trace_id", "");
 }
 
 ErrorCode error_code_from(std::string_view name) {
@@ -146,7 +151,7 @@ void bind_job(Query& query, const Job& job) {
       .bind(20, results_text(job.results))
       .bind(21, job.idempotency_key)
       .bind(22, job.owner)
-      .bind(23, subscriber_text(job.spec.subscriber));
+      .bind(23, context_text(job));
 }
 
 constexpr const char* kInsertJob =
@@ -190,7 +195,7 @@ Job read_job(const Query& row) {
         {file.at("output"), file.at("file_name"), file.at("media_type"), file.at("bytes")});
   job.idempotency_key = row.text(20);
   job.owner = row.text(21);
-  job.spec.subscriber = subscriber_from(row.text(22));
+  read_context(row.text(22), job);
   return job;
 }
 

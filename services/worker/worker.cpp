@@ -101,7 +101,7 @@ struct WorkerPool::Impl {
   std::string_view hand_back(const Run& run);
   std::string_view close(const Run& run, JobState state, std::string message,
                          std::optional<Error> error, std::vector<ResultFile> files);
-  std::function<void(const Progress&)> progress_sink(Run& run, std::string_view unit);
+  std::function<void(const Progress&)> progress_sink(Run& run, const Job& job);
 
   void discard(const Claim& claim);
   void keep(const std::stop_token& stop);
@@ -214,7 +214,8 @@ void WorkerPool::Impl::work(const Claim& claim, const std::stop_token& shutdown)
                            {"process", job->spec.process},
                            {"attempt", claim.attempt},
                            {"worker", claim.worker},
-                           {"owner", job->owner}});
+                           {"owner", job->owner},
+                           {"trace_id", job->trace_id}});
   metrics.job_started(job->spec.process);
   std::filesystem::path folder;
   auto outcome = run_job(*job, *run, folder);
@@ -227,12 +228,14 @@ void WorkerPool::Impl::work(const Claim& claim, const std::stop_token& shutdown)
                             {"process", job->spec.process},
                             {"state", ended},
                             {"seconds", seconds},
-                            {"error", error}});
+                            {"error", error},
+                            {"trace_id", job->trace_id}});
   else
     log.info("job_ended", {{"job_id", job->id},
                            {"process", job->spec.process},
                            {"state", ended},
-                           {"seconds", seconds}});
+                           {"seconds", seconds},
+                           {"trace_id", job->trace_id}});
 }
 
 // The edge behind which nothing is thrown: whatever a job does, its worker goes on.
@@ -244,7 +247,7 @@ Result<ProcessOutcome> WorkerPool::Impl::run_job(const Job& job, Run& run,
     folder = *staged;
     RunContext context;
     context.stop = run.stop.get_token();
-    context.on_progress = progress_sink(run, progress_unit(job.spec.process));
+    context.on_progress = progress_sink(run, job);
     context.now_s = [] {
       return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
     };
@@ -358,19 +361,20 @@ std::string_view WorkerPool::Impl::close(const Run& run, JobState state, std::st
   return to_string(job->state);
 }
 
-std::function<void(const Progress&)> WorkerPool::Impl::progress_sink(Run& run,
-                                                                     std::string_view unit) {
+std::function<void(const Progress&)> WorkerPool::Impl::progress_sink(Run& run, const Job& job) {
   struct Seen {
     std::set<std::string, std::less<>> stages{};
     std::optional<Clock::time_point> stored{};
     int percent = 0;
   };
-  return [this, &run, unit, seen = std::make_shared<Seen>()](const Progress& progress) {
+  return [this, &run, unit = progress_unit(job.spec.process), trace_id = job.trace_id,
+          seen = std::make_shared<Seen>()](const Progress& progress) {
     if (!seen->stages.contains(progress.stage)) {
       seen->stages.emplace(progress.stage);
-      log.info(
-          "job_stage",
-          {{"job_id", run.claim.job_id}, {"stage", progress.stage}, {"total", progress.total}});
+      log.info("job_stage", {{"job_id", run.claim.job_id},
+                             {"stage", progress.stage},
+                             {"total", progress.total},
+                             {"trace_id", trace_id}});
     }
     const auto now = Clock::now();
     if (seen->stored && now - *seen->stored < Milliseconds(options.progress_interval_ms)) return;

@@ -54,6 +54,15 @@ class GrpcTest(ServiceTest):
 
 
 class JobCycle(GrpcTest):
+    def test_trace_of_a_call_is_that_of_its_job_in_the_log(self):
+        trace = "4bf92f3577b34da6a3ce929d0e0e4736"
+        request = self.pb.SubmitRequest(process="export-for-simulation", inputs_json=json.dumps({"bbox": SEA}))
+        job = self.jobs.Submit(request, timeout=LIMIT_S, metadata=[("traceparent", f"00-{trace}-00f067aa0ba902b7-01")])
+        self.watch(job)
+        lines = self.service.logged(job_id=job.job_id)
+        self.assertLessEqual({"job_accepted", "job_started"}, {line["event"] for line in lines})
+        self.assertEqual({line["trace_id"] for line in lines}, {trace})
+
     def test_submit_watch_and_fetch(self):
         states = self.watch(self.submit({"bbox": CITY}))
         job = states[-1]

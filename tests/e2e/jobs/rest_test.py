@@ -203,6 +203,22 @@ class JobCycle(ServiceTest):
             self.assertEqual(kept.getresponse().read(), b"ok\n")
         kept.close()
 
+    def test_trace_of_a_request_is_that_of_its_job_in_the_log(self):
+        def traces_of(headers):
+            answer = self.service.send("POST", EXECUTION, {"inputs": {"bbox": SEA}}, headers)
+            self.assertEqual(answer.status, 201)
+            job = answer.json()["jobID"]
+            self.service.wait(answer.headers["Location"])
+            lines = self.service.logged(job_id=job)
+            self.assertLessEqual({"job_accepted", "job_started"}, {line["event"] for line in lines})
+            return {line["trace_id"] for line in lines}
+
+        trace = "4bf92f3577b34da6a3ce929d0e0e4736"
+        self.assertEqual(traces_of({"traceparent": f"00-{trace}-00f067aa0ba902b7-01"}), {trace})
+        made = traces_of({"traceparent": f"00-{trace}-not-one"})
+        self.assertEqual(len(made), 1)
+        self.assertRegex(made.pop(), "^(?!" + trace + ")[0-9a-f]{32}$")
+
     def test_metrics_count_requests_and_jobs(self):
         self.service.wait(self.service.execute({"bbox": SEA}))
         metrics = self.service.get("/metrics").body.decode()

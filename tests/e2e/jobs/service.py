@@ -99,6 +99,12 @@ class Service:
             time.sleep(0.02)
         raise AssertionError(f"{job} is still {status}")
 
+    def logged(self, **members):
+        """Lines of the log that have these members."""
+        written = self.log.read_text(errors="replace").rpartition("\n")[0]
+        lines = [json.loads(line) for line in written.splitlines() if line.startswith("{")]
+        return [line for line in lines if members.items() <= line.items()]
+
     def kill(self):
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGKILL)

@@ -76,6 +76,7 @@ TEST_F(EmbeddedStoreTest, KeepsEveryFieldOfAJobOverAReopening) {
   job.started = job.created + 1;
   job.finished = job.created + 2;
   job.owner = "key:city";
+  job.trace_id = "4bf92f3577b34da6a3ce929d0e0e4736";
   job.results = {{"obj", "model.obj", "model/obj", 1234}};
   ASSERT_TRUE(store_->insert(job));
 
@@ -98,6 +99,7 @@ TEST_F(EmbeddedStoreTest, KeepsEveryFieldOfAJobOverAReopening) {
   EXPECT_EQ(read->started, job.started);
   EXPECT_EQ(read->finished, job.finished);
   EXPECT_EQ(read->owner, "key:city");
+  EXPECT_EQ(read->trace_id, job.trace_id);
   ASSERT_EQ(read->results.size(), 1u);
   EXPECT_EQ(read->results[0].file_name, "model.obj");
   EXPECT_EQ(read->results[0].bytes, 1234u);
