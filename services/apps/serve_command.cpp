@@ -247,7 +247,7 @@ Result<void> serve(const ServeOptions& options) {
        .check_callback = [allow_private = options.allow_private_callbacks](const std::string& uri) {
          return check_callback_uri(uri, allow_private);
        }});
-  CallbackSender callbacks(**store, callback_json, log, *std::move(sending));
+  CallbackSender callbacks(**store, callback_json, log, metrics, *std::move(sending));
   WorkerPool workers(**store, **store, **results, *source, log, metrics, worker_options(options));
   RestServer rest(jobs, metrics, rest_options(options, **access, log));
   RpcServer rpc(jobs, metrics, rpc_options(options, **access, log));

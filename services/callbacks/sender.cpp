@@ -16,6 +16,7 @@
 #include "services/callbacks/address_guard.h"
 #include "services/callbacks/signature.h"
 #include "services/telemetry/log.h"
+#include "services/telemetry/metrics.h"
 
 namespace citymesh {
 namespace {
@@ -44,8 +45,13 @@ struct CallbackSender::Impl {
     TimeMs not_before = 0;
   };
 
-  Impl(JobStore& jobs_in, CallbackBody body_in, Log& log_in, SenderOptions options_in)
-      : jobs(jobs_in), body(std::move(body_in)), log(log_in), options(std::move(options_in)) {}
+  Impl(JobStore& jobs_in, CallbackBody body_in, Log& log_in, Metrics& metrics_in,
+       SenderOptions options_in)
+      : jobs(jobs_in),
+        body(std::move(body_in)),
+        log(log_in),
+        metrics(metrics_in),
+        options(std::move(options_in)) {}
 
   void hear(const Job& job) {
     const auto& subscriber = job.spec.subscriber;
@@ -97,6 +103,7 @@ struct CallbackSender::Impl {
   }
 
   void tell(const Job& job, std::uint32_t attempt, bool is_last, const Result<int>& status) {
+    metrics.callback(is_received(status) ? "delivered" : is_last ? "given_up" : "retried");
     if (is_received(status)) {
       log.info("callback_sent", {{"job_id", job.id},
                                  {"to", shown_uri(uri_for(job))},
@@ -158,6 +165,7 @@ struct CallbackSender::Impl {
   JobStore& jobs;
   CallbackBody body;
   Log& log;
+  Metrics& metrics;
   SenderOptions options;
 
   std::mutex mutex;
@@ -168,8 +176,9 @@ struct CallbackSender::Impl {
   std::vector<std::jthread> threads;
 };
 
-CallbackSender::CallbackSender(JobStore& jobs, CallbackBody body, Log& log, SenderOptions options)
-    : impl_(std::make_unique<Impl>(jobs, std::move(body), log, std::move(options))) {}
+CallbackSender::CallbackSender(JobStore& jobs, CallbackBody body, Log& log, Metrics& metrics,
+                               SenderOptions options)
+    : impl_(std::make_unique<Impl>(jobs, std::move(body), log, metrics, std::move(options))) {}
 
 CallbackSender::~CallbackSender() { stop(); }
 

@@ -12,6 +12,7 @@
 namespace citymesh {
 
 class Log;
+class Metrics;
 
 struct SenderOptions {
   PostOptions post{};
@@ -33,10 +34,11 @@ using CallbackBody = std::function<std::string(const Job&)>;
 
 /// Tells the subscribers of jobs what becomes of them. That a job has ended is told again until a
 /// status of 2xx comes back, also after a restart; two may hear it twice, none not at all while it
-/// can be reached. How a job gets on is told once, and only the latest. The store must outlive it.
+/// can be reached. How a job gets on is told once, and only the latest. What it refers to must outlive it.
 class CallbackSender {
  public:
-  CallbackSender(JobStore& jobs, CallbackBody body, Log& log, SenderOptions options);
+  CallbackSender(JobStore& jobs, CallbackBody body, Log& log, Metrics& metrics,
+                 SenderOptions options);
   ~CallbackSender();  ///< stops
   CallbackSender(const CallbackSender&) = delete;
   CallbackSender& operator=(const CallbackSender&) = delete;

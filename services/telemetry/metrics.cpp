@@ -54,6 +54,11 @@ struct Metrics::Impl {
           .Name("citymesh_issues_total")
           .Help("Issues found in the buildings of successful jobs, by code")
           .Register(registry);
+  prometheus::Family<prometheus::Counter>& callbacks =
+      prometheus::BuildCounter()
+          .Name("citymesh_callbacks_total")
+          .Help("Attempts to tell the subscribers of jobs, by outcome")
+          .Register(registry);
   prometheus::Gauge& queue_age = prometheus::BuildGauge()
                                      .Name("citymesh_queue_age_seconds")
                                      .Help("Age of the oldest job that waits for a worker")
@@ -94,6 +99,8 @@ Metrics::Metrics() : impl_(std::make_unique<Impl>()) {
       .Register(impl_->registry)
       .Add({{"version", text_of(version())}})
       .Set(1);
+  for (const auto* outcome : {"delivered", "retried", "given_up"})
+    impl_->callbacks.Add({{"outcome", outcome}});
 }
 
 Metrics::~Metrics() = default;
@@ -119,6 +126,10 @@ void Metrics::buildings(std::string_view outcome, std::uint64_t count) {
 
 void Metrics::issues(std::string_view code, std::uint64_t count) {
   impl_->issues.Add({{"code", text_of(code)}}).Increment(static_cast<double>(count));
+}
+
+void Metrics::callback(std::string_view outcome) {
+  impl_->callbacks.Add({{"outcome", text_of(outcome)}}).Increment();
 }
 
 void Metrics::set_queue(std::uint64_t jobs, double oldest_age_s) {

@@ -24,6 +24,8 @@ class Metrics {
   void buildings(std::string_view outcome, std::uint64_t count);
   /// Found in the input; `code` as in the reports: 303, C105.
   void issues(std::string_view code, std::uint64_t count);
+  /// An attempt to tell a subscriber. `outcome`: delivered, retried (tried again later), given_up.
+  void callback(std::string_view outcome);
   void set_queue(std::uint64_t jobs, double oldest_age_s);
 
   /// `route` is the pattern (`/jobs/{id}`), never the path: labels must stay few.

@@ -17,7 +17,7 @@ using testing::StartsWith;
 class ConformanceCallback : public LiveService {
  protected:
   ConformanceCallback()
-      : sender_(*store_, callback_json, log_,
+      : sender_(*store_, callback_json, log_, metrics_,
                 {.post = {.allow_private = true}, .progress_interval_ms = 0, .poll_ms = 5}) {
     sender_.start();
   }

@@ -9,6 +9,7 @@
 #include "services/callbacks/signature.h"
 #include "services/stores/embedded_store.h"
 #include "services/telemetry/log.h"
+#include "services/telemetry/metrics.h"
 #include "tests/support/http_receiver.h"
 #include "tests/support/temp_folder.h"
 
@@ -29,7 +30,7 @@ class Callbacks : public testing::Test {
     sender_ = std::make_unique<CallbackSender>(
         *store_,
         [](const Job& job) { return "{\"state\":\"" + std::string(to_string(job.state)) + "\"}"; },
-        log_, std::move(options));
+        log_, metrics_, std::move(options));
     sender_->start();
   }
   std::string stopped_log() {
@@ -62,6 +63,16 @@ class Callbacks : public testing::Test {
       if (!request || !request->starts_with("POST /progress")) return request.value_or("");
     }
   }
+  /// Whether an attempt with that outcome is counted in the end.
+  bool is_counted(const std::string& outcome) {
+    const auto none = "citymesh_callbacks_total{outcome=\"" + outcome + "\"} 0\n";
+    const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (metrics_.text().find(none) != std::string::npos) {
+      if (std::chrono::steady_clock::now() > limit) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return true;
+  }
   bool is_anything_due() {
     const auto due = store_->take_callback(now_ms() + 86'400'000,
                                            [](std::uint32_t) { return std::optional<TimeMs>(0); });
@@ -72,6 +83,7 @@ class Callbacks : public testing::Test {
   std::unique_ptr<EmbeddedStore> store_ = *EmbeddedStore::open(folder_ / "jobs.sqlite");
   std::ostringstream lines_;
   Log log_{lines_};
+  Metrics metrics_;
   HttpReceiver receiver_;
   SenderOptions options_{.post = {.allow_private = true, .timeout_s = 5},
                          .secret = kSecret,
@@ -95,6 +107,7 @@ TEST_F(Callbacks, TellThatAJobWasSuccessfulSignedAndOnce) {
   ASSERT_THAT(signed_by, StartsWith("t="));
   const auto seconds = std::stoll(signed_by.substr(2));
   EXPECT_EQ(signed_by, signature(kSecret, seconds, HttpReceiver::body(request)));
+  EXPECT_TRUE(is_counted("delivered"));
 }
 
 TEST_F(Callbacks, TellOfFailureAndDismissalUnderTheirAddress) {
@@ -134,6 +147,8 @@ TEST_F(Callbacks, AreGivenUpAfterTheLastAttempt) {
   options.first_retry_ms = 100;
   start(options);
   for (int attempt = 1; attempt <= 2; ++attempt) EXPECT_THAT(told(), StartsWith("POST /done"));
+  EXPECT_TRUE(is_counted("retried"));
+  EXPECT_TRUE(is_counted("given_up"));
   EXPECT_FALSE(is_anything_due());
   EXPECT_TRUE(receiver_.is_quiet());
 }
