@@ -2,50 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
-#include <system_error>
-#include <tuple>
-
 #include "services/access/api_keys.h"
+#include "services/access/key_file.h"
 
 namespace citymesh {
 namespace {
-
-namespace fs = std::filesystem;
-
-constexpr std::uintmax_t kMostFileBytes = 16 << 20;
-
-struct FileState {
-  fs::file_time_type written{};
-  std::uintmax_t bytes = 0;
-  friend bool operator==(const FileState&, const FileState&) = default;
-};
-
-FileState state_of(const fs::path& file) {
-  std::error_code ignored;
-  FileState state;
-  if (file.empty()) return state;
-  state.written = fs::last_write_time(file, ignored);
-  state.bytes = fs::file_size(file, ignored);
-  return state;
-}
-
-Result<std::string> read_small_file(const fs::path& file) {
-  std::error_code error;
-  const auto bytes = fs::file_size(file, error);
-  std::ifstream input(file, std::ios::binary);
-  if (error || !input)
-    return fail(ErrorCode::NotFound, fmt::format("'{}' cannot be read", file.string()));
-  if (bytes > kMostFileBytes)
-    return fail(ErrorCode::InvalidArgument, fmt::format("'{}' has {} bytes, expected at most {}",
-                                                        file.string(), bytes, kMostFileBytes));
-  return std::string(std::istreambuf_iterator<char>(input), {});
-}
-
-Error in_file(const fs::path& file, const Error& error) {
-  return fail(error.code, fmt::format("'{}': {}", file.string(), error.message));
-}
 
 bool is_bearer(std::string_view authorization) {
   constexpr std::string_view kScheme = "bearer ";
@@ -65,28 +26,18 @@ std::int64_t now_s() {
 }  // namespace
 
 struct Access::Known {
-  FileState keys_state{}, jwks_state{};
+  FileState state{};
   ApiKeys keys{};
-  std::vector<VerificationKey> issuer_keys{};
 
-  static Result<std::shared_ptr<const Known>> read(const AccessOptions& options) {
+  static Result<std::shared_ptr<const Known>> read(const std::filesystem::path& file) {
     auto known = std::make_shared<Known>();
-    known->keys_state = state_of(options.api_keys);
-    known->jwks_state = state_of(options.oidc_jwks_file);
-    if (const auto& file = options.api_keys; !file.empty()) {
-      const auto text = read_small_file(file);
-      if (!text) return text.error();
-      auto keys = ApiKeys::parse(*text);
-      if (!keys) return in_file(file, keys.error());
-      known->keys = *std::move(keys);
-    }
-    if (const auto& file = options.oidc_jwks_file; !file.empty()) {
-      const auto text = read_small_file(file);
-      if (!text) return text.error();
-      auto keys = parse_jwks(*text);
-      if (!keys) return in_file(file, keys.error());
-      known->issuer_keys = *std::move(keys);
-    }
+    if (file.empty()) return std::shared_ptr<const Known>(std::move(known));
+    known->state = state_of(file);
+    const auto text = read_key_file(file);
+    if (!text) return text.error();
+    auto keys = ApiKeys::parse(*text);
+    if (!keys) return named(file.string(), keys.error());
+    known->keys = *std::move(keys);
     return std::shared_ptr<const Known>(std::move(known));
   }
 };
@@ -97,11 +48,14 @@ Access::~Access() = default;
 Result<std::unique_ptr<Access>> Access::open(AccessOptions options) {
   auto proxies = Networks::parse(options.trusted_proxies);
   if (!proxies) return proxies.error();
-  auto known = Known::read(options);
+  auto known = Known::read(options.api_keys);
   if (!known) return known.error();
+  auto issuer_keys = IssuerKeys::open(options.oidc_jwks);
+  if (!issuer_keys) return issuer_keys.error();
   auto access = std::unique_ptr<Access>(new Access(std::move(options)));
   access->trusted_proxies_ = *std::move(proxies);
   access->known_ = *std::move(known);
+  access->issuer_keys_ = *std::move(issuer_keys);
   return access;
 }
 
@@ -110,9 +64,9 @@ const Access& Access::for_everybody() {
   return *access;
 }
 
-bool Access::is_required() const {
-  return !options_.api_keys.empty() || !options_.oidc_jwks_file.empty();
-}
+bool Access::takes_tokens() const { return !options_.oidc_jwks.source.empty(); }
+
+bool Access::is_required() const { return !options_.api_keys.empty() || takes_tokens(); }
 
 std::shared_ptr<const Access::Known> Access::known() const {
   const std::scoped_lock lock(mutex_);
@@ -120,14 +74,15 @@ std::shared_ptr<const Access::Known> Access::known() const {
 }
 
 Result<bool> Access::reload() {
-  const auto before = known();
-  if (state_of(options_.api_keys) == before->keys_state &&
-      state_of(options_.oidc_jwks_file) == before->jwks_state)
-    return false;
-  auto now = Known::read(options_);
+  const auto issuer_keys = issuer_keys_->reload();
+  if (state_of(options_.api_keys) == known()->state) return issuer_keys;
+  auto now = Known::read(options_.api_keys);
   if (!now) return now.error();
-  const std::scoped_lock lock(mutex_);
-  known_ = *std::move(now);
+  {
+    const std::scoped_lock lock(mutex_);
+    known_ = *std::move(now);
+  }
+  if (!issuer_keys) return issuer_keys;
   return true;
 }
 
@@ -151,9 +106,11 @@ Result<Client> Access::identify(const Credentials& credentials) const {
   if (auto client = known->keys.find(secret)) return *std::move(client);
   if (secret.starts_with(kApiKeyPrefix) || !credentials.api_key.empty())
     return fail(ErrorCode::PermissionDenied, "the API key is not known");
-  if (options_.oidc_jwks_file.empty())
+  if (!takes_tokens())
     return fail(ErrorCode::PermissionDenied, "the API key is not known, and tokens are not taken");
-  return client_of_token(secret, known->issuer_keys, options_.token_rules, now_s());
+  auto issuer_keys = issuer_keys_->current();
+  if (names_unknown_key(secret, *issuer_keys)) issuer_keys = issuer_keys_->look_again();
+  return client_of_token(secret, *issuer_keys, options_.token_rules, now_s());
 }
 
 }  // namespace citymesh

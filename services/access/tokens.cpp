@@ -139,6 +139,14 @@ Role role_of(const json& claims, const TokenRules& rules) {
 
 }  // namespace
 
+bool names_unknown_key(std::string_view token, const std::vector<VerificationKey>& keys) {
+  const auto parts = take_apart(token);
+  if (!parts) return false;
+  const auto id = text_claim(parts->header, "kid");
+  return !id.empty() &&
+         std::ranges::none_of(keys, [&](const VerificationKey& key) { return key.id == id; });
+}
+
 Result<Client> client_of_token(std::string_view token, const std::vector<VerificationKey>& keys,
                                const TokenRules& rules, std::int64_t now_s) {
   const auto parts = take_apart(token);

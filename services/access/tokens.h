@@ -24,6 +24,9 @@ struct TokenRules {
 /// How far the clocks of issuer and service may be apart.
 inline constexpr std::int64_t kClockLeeway_s = 60;
 
+/// Whether a token says that it is signed with a key (`kid`) that is none of these.
+bool names_unknown_key(std::string_view token, const std::vector<VerificationKey>& keys);
+
 /// The client of a JSON Web Token (RFC 7519) that is signed by one of the keys and in force:
 /// RS256 and ES256 only, whatever the token itself says. Its role is the highest one that its role
 /// claim (a text with blanks, or an array) names. Any error means that the token proves nothing;

@@ -57,7 +57,7 @@ WorkerOptions worker_options(const ServeOptions& options) {
 
 AccessOptions access_options(const ServeOptions& options) {
   return {.api_keys = options.api_keys,
-          .oidc_jwks_file = options.oidc_jwks_file,
+          .oidc_jwks = {.source = options.oidc_jwks},
           .token_rules = {.issuer = options.oidc_issuer,
                           .audience = options.oidc_audience,
                           .role_claim = options.oidc_role_claim,

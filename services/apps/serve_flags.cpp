@@ -83,9 +83,10 @@ void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> r
   add("--api_keys", options.api_keys,
       "file of the API keys that are accepted, by lines of `citymesh make-key`")
       ->type_name("FILE");
-  add("--oidc_jwks_file", options.oidc_jwks_file,
-      "JSON Web Key Set of those who issue the tokens that are accepted")
-      ->type_name("FILE");
+  add("--oidc_jwks", options.oidc_jwks,
+      "JSON Web Key Set of those who issue the tokens that are accepted: a file, or a https URL "
+      "from which it is fetched")
+      ->type_name("FILE|URL");
   add("--oidc_issuer", options.oidc_issuer, "issuer that tokens must name (`iss`)");
   add("--oidc_audience", options.oidc_audience, "audience that tokens must name (`aud`)");
   add("--oidc_role_claim", options.oidc_role_claim,

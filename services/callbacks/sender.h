@@ -34,7 +34,8 @@ using CallbackBody = std::function<std::string(const Job&)>;
 
 /// Tells the subscribers of jobs what becomes of them. That a job has ended is told again until a
 /// status of 2xx comes back, also after a restart; two may hear it twice, none not at all while it
-/// can be reached. How a job gets on is told once, and only the latest. What it refers to must outlive it.
+/// can be reached. How a job gets on is told once, and only the latest. What it refers to must
+/// outlive it.
 class CallbackSender {
  public:
   CallbackSender(JobStore& jobs, CallbackBody body, Log& log, Metrics& metrics,

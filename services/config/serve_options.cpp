@@ -25,7 +25,7 @@ Error wrong(std::string_view name, const Value& value, std::string_view expected
 }
 
 bool knows_clients(const ServeOptions& options) {
-  return !options.api_keys.empty() || !options.oidc_jwks_file.empty();
+  return !options.api_keys.empty() || !options.oidc_jwks.empty();
 }
 
 /// As browsers send it: no path and no slash at the end, small letters, no port that goes without
@@ -58,16 +58,16 @@ Result<void> check_web_origins(std::string_view list) {
 }
 
 Result<void> check_access(const ServeOptions& options) {
-  const bool tokens = !options.oidc_jwks_file.empty();
+  const bool tokens = !options.oidc_jwks.empty();
   for (const auto& [name, value] : {std::pair("--oidc_issuer", options.oidc_issuer),
                                     std::pair("--oidc_audience", options.oidc_audience)}) {
     if (tokens && value.empty())
       return fail(ErrorCode::InvalidArgument,
-                  fmt::format("{} is missing; expected with --oidc_jwks_file, so that tokens for "
+                  fmt::format("{} is missing; expected with --oidc_jwks, so that tokens for "
                               "others are refused",
                               name));
     if (!tokens && !value.empty())
-      return wrong(name, value, "a file of public keys in --oidc_jwks_file beside it");
+      return wrong(name, value, "public keys in --oidc_jwks beside it");
   }
   if (tokens && options.oidc_role_claim.empty())
     return wrong("--oidc_role_claim", "empty", "the name of a claim, for example roles");
@@ -76,13 +76,13 @@ Result<void> check_access(const ServeOptions& options) {
                 "one of --tls_certificate and --tls_key is missing; expected both or none");
   if (knows_clients(options) && options.insecure)
     return fail(ErrorCode::InvalidArgument,
-                "--insecure is given, expected not together with --api_keys or --oidc_jwks_file");
+                "--insecure is given, expected not together with --api_keys or --oidc_jwks");
   if (knows_clients(options) || options.insecure) return {};
   for (const auto& [name, endpoint] :
        {std::pair("--listen", options.listen), std::pair("--grpc", options.grpc)})
     if (!is_loopback(endpoint))
       return wrong(name, to_string(endpoint),
-                   "a loopback address, or --api_keys or --oidc_jwks_file: whoever reaches it "
+                   "a loopback address, or --api_keys or --oidc_jwks: whoever reaches it "
                    "could submit, read and dismiss jobs (--insecure if that is meant)");
   return {};
 }

@@ -28,11 +28,11 @@ struct ServeOptions {
   Endpoint grpc{"127.0.0.1", 50051};
   std::string public_url{};  ///< base of all links; empty: from the request
 
-  // Who may do what. With neither file everybody may do everything.
-  std::filesystem::path api_keys{};        ///< file that `make-key` makes the lines of
-  std::filesystem::path oidc_jwks_file{};  ///< public keys of those who issue tokens
-  std::string oidc_issuer{};               ///< `iss` of tokens
-  std::string oidc_audience{};             ///< `aud` of tokens
+  // Who may do what. With neither keys nor tokens everybody may do everything.
+  std::filesystem::path api_keys{};  ///< file that `make-key` makes the lines of
+  std::string oidc_jwks{};           ///< public keys of those who issue tokens: a file or a URL
+  std::string oidc_issuer{};         ///< `iss` of tokens
+  std::string oidc_audience{};       ///< `aud` of tokens
   std::string oidc_role_claim = "roles";
   std::string oidc_role_prefix = "citymesh:";  ///< of the names in that claim that count
   std::filesystem::path tls_certificate{};     ///< PEM, of REST and gRPC; empty: no TLS

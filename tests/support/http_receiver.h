@@ -44,10 +44,11 @@ class HttpReceiver {
   std::string url(const std::string& path, const std::string& host = "127.0.0.1") const {
     return "http://" + host + ":" + std::to_string(port_) + path;
   }
-  /// The next answers, in this order; 204 when there are none left.
-  void answer(std::string head) {
+  /// The next answers, in this order; 204 when there are none left. `head`: status and headers.
+  void answer(std::string head, const std::string& body = {}) {
     const std::scoped_lock lock(mutex_);
-    answers_.push_back(std::move(head));
+    answers_.push_back("HTTP/1.1 " + std::move(head) + "\r\nContent-Length: " +
+                       std::to_string(body.size()) + "\r\nConnection: close\r\n\r\n" + body);
   }
   /// The next request as it came: header and body. Nothing when none comes in time.
   std::optional<std::string> next(std::chrono::milliseconds patience = std::chrono::seconds(30)) {
@@ -84,8 +85,7 @@ class HttpReceiver {
       {
         const std::scoped_lock lock(mutex_);
         if (!answers_.empty()) {
-          reply =
-              "HTTP/1.1 " + answers_.front() + "\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
+          reply = std::move(answers_.front());
           answers_.pop_front();
         }
         requests_.push_back(std::move(request));

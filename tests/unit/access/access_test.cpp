@@ -80,7 +80,7 @@ TEST_F(AccessTest, TokensAreTakenBesideKeys) {
   const TokenIssuer issuer(TokenIssuer::Kind::P256);
   const auto key = *make_api_key("alice", Role::ReadOwn);
   const auto access = opened({.api_keys = file("keys", key.line),
-                              .oidc_jwks_file = file("jwks", issuer.jwks()),
+                              .oidc_jwks = {.source = file("jwks", issuer.jwks())},
                               .token_rules = {.issuer = "i", .audience = "a"}});
   const nlohmann::json claims = {{"iss", "i"},
                                  {"aud", "a"},
@@ -99,7 +99,7 @@ TEST_F(AccessTest, FilesThatCannotBeUsedAreNamed) {
   const auto missing = Access::open({.api_keys = folder_ / "none"});
   ASSERT_FALSE(missing);
   EXPECT_THAT(missing.error().message, HasSubstr("none"));
-  const auto wrong = Access::open({.oidc_jwks_file = file("jwks.json", "{}")});
+  const auto wrong = Access::open({.oidc_jwks = {.source = file("jwks.json", "{}")}});
   ASSERT_FALSE(wrong);
   EXPECT_THAT(wrong.error().message, HasSubstr("jwks.json"));
   EXPECT_FALSE(Access::open({.trusted_proxies = "proxy.local"}));

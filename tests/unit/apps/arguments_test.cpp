@@ -170,7 +170,7 @@ TEST(ServeOptions, TokensAreCheckedForIssuerAndAudience) {
   const TempFolder folder;
   ServeOptions options;
   options.data = folder.path();
-  options.oidc_jwks_file = "keys.json";
+  options.oidc_jwks = "keys.json";
   EXPECT_THAT(check(options).error().message, HasSubstr("--oidc_issuer"));
   options.oidc_issuer = "https://login.test";
   EXPECT_THAT(check(options).error().message, HasSubstr("--oidc_audience"));
@@ -179,8 +179,8 @@ TEST(ServeOptions, TokensAreCheckedForIssuerAndAudience) {
   options.insecure = true;
   EXPECT_THAT(check(options).error().message, HasSubstr("--insecure"));
   options.insecure = false;
-  options.oidc_jwks_file.clear();
-  EXPECT_THAT(check(options).error().message, HasSubstr("--oidc_jwks_file"));
+  options.oidc_jwks.clear();
+  EXPECT_THAT(check(options).error().message, HasSubstr("--oidc_jwks"));
 }
 
 }  // namespace
