@@ -42,7 +42,7 @@ void mark_new_faces(Body& body) {
 
 ProcessedPart process_part(const Building& building, const std::string& name, const Inputs& inputs,
                            const std::vector<OpenFormat>& formats, const RunContext& context) {
-  RoundTripGate gate(formats);
+  RoundTripGate gate(formats, name);
   // A block stands on the ground: no stand-in for a balcony or a chimney.
   const bool installation = building.kind == ObjectKind::BuildingInstallation;
   const HealOptions options{inputs.snap_tolerance_m, inputs.planarity_tolerance_m,

@@ -66,7 +66,7 @@ std::vector<Issue> RoundTripGate::operator()(const Shell& shell) {
   };
   BuildingBodies building;
   building.bodies.push_back({});
-  building.bodies[0].name = "body";
+  building.bodies[0].name = name_;
   building.bodies[0].mesh = std::move(mesh_);
   bool judged = false;
   for (const OpenFormat& open : formats_) {

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/result.h"
@@ -16,7 +18,9 @@ namespace citymesh {
 /// shell it judged last.
 class RoundTripGate {
  public:
-  explicit RoundTripGate(const std::vector<OpenFormat>& formats) : formats_(formats) {}
+  /// `name`: of the body, for messages.
+  explicit RoundTripGate(const std::vector<OpenFormat>& formats, std::string name = "body")
+      : formats_(formats), name_(std::move(name)) {}
 
   std::vector<Issue> operator()(const Shell& shell);
 
@@ -28,6 +32,7 @@ class RoundTripGate {
 
  private:
   const std::vector<OpenFormat>& formats_;
+  const std::string name_;
   TriangleMesh mesh_;
   std::uint64_t fingerprint_ = 0;
   std::optional<Error> refused_;

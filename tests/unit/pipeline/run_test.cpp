@@ -154,6 +154,7 @@ TEST(Run, BinaryStlBeyondItsRangeIsRefusedNamingAscii) {
   EXPECT_EQ(outcome.error().code, ErrorCode::FailedPrecondition);
   EXPECT_THAT(outcome.error().message, HasSubstr("ASCII"));
   EXPECT_THAT(outcome.error().message, HasSubstr("1024"));
+  EXPECT_THAT(outcome.error().message, HasSubstr("body \"BLDG_"));
 }
 
 TEST(Run, ARepeatedIdKeepsTheFirst) {
