@@ -31,9 +31,12 @@ Json json_or_page(std::string_view description, std::string_view schema) {
   return {{"description", description}, {"content", std::move(media)}};
 }
 
-Json operation(std::string_view id, std::string_view tag, std::string_view summary, Json parameters,
-               Json responses) {
-  Json described = {{"operationId", id}, {"tags", Json::array({tag})}, {"summary", summary}};
+Json operation(std::string_view id, std::string_view tag, std::string_view summary,
+               std::string_view description, Json parameters, Json responses) {
+  Json described = {{"operationId", id},
+                    {"tags", Json::array({tag})},
+                    {"summary", summary},
+                    {"description", description}};
   if (!parameters.empty()) described["parameters"] = std::move(parameters);
   for (const auto* wrong : {"4XX", "5XX"}) responses[wrong] = ref("responses", "Problem");
   described["responses"] = std::move(responses);
@@ -236,6 +239,7 @@ Json execution_path(const ProcessSpec& process) {
                            "not there after 10 seconds; without it the results.";
   auto post = operation(
       fmt::format("execute-{}", process.id), "Processes", fmt::format("Execute {}", process.id),
+      process.description,
       Json::array({parameter("Prefer", "header", prefer, text()),
                    parameter("Idempotency-Key", "header",
                              "A text of the client's own, for instance a UUID: the same request "
@@ -260,6 +264,7 @@ Json result_operation(const Json& job_id) {
   part["headers"]["Content-Range"] = header("`bytes first-last/size`", text());
   return operation(
       "result", "Jobs", "One result file",
+      "It never changes. Ranges and ETags spare what the client has already.",
       Json::array({job_id,
                    parameter("output", "path", "An output (`obj`) or a result file (`picture.svg`)",
                              text()),
@@ -288,26 +293,33 @@ Json paths() {
   api_answer["content"]["text/html"] = {{"schema", text()}};
 
   Json all = Json::object();
-  all["/"] = get(operation("landing", "Service", "Landing page", Json::array({f}),
+  all["/"] = get(operation("landing", "Service", "Landing page",
+                           "Title and links to everything else.", Json::array({f}),
                            {{"200", json_or_page("Where everything is", "landingPage")}}));
-  all["/api"] = get(
-      operation("api", "Service", "This API definition", Json::array({f}), {{"200", api_answer}}));
-  all["/openapi.json"] = get(operation("openapi", "Service", "The same under its usual name",
-                                       Json::array({f}), {{"200", std::move(api_answer)}}));
+  all["/api"] = get(operation("api", "Service", "This API definition",
+                              "OpenAPI 3.0, made from the tables that the program itself uses.",
+                              Json::array({f}), {{"200", api_answer}}));
+  all["/openapi.json"] =
+      get(operation("openapi", "Service", "The same under its usual name", "What `/api` answers.",
+                    Json::array({f}), {{"200", std::move(api_answer)}}));
   all["/conformance"] =
-      get(operation("conformance", "Service", "Conformance classes", Json::array({f}),
+      get(operation("conformance", "Service", "Conformance classes",
+                    "What of OGC API - Processes 1.0 is supported.", Json::array({f}),
                     {{"200", json_or_page("Conformance classes", "conformance")}}));
-  all["/processes"] =
-      get(operation("processes", "Processes", "List of processes", Json::array({limit, offset, f}),
-                    {{"200", json_or_page("Processes", "processList")}}));
+  all["/processes"] = get(operation("processes", "Processes", "List of processes",
+                                    "With their ids, and links to what they take and make.",
+                                    Json::array({limit, offset, f}),
+                                    {{"200", json_or_page("Processes", "processList")}}));
   all["/processes/{processID}"] = get(operation(
-      "process", "Processes", "Inputs and outputs of a process", Json::array({process_id, f}),
-      {{"200", json_or_page("Process description", "process")}}));
+      "process", "Processes", "Inputs and outputs of a process",
+      "The JSON Schema of every input, and the media types of every output.",
+      Json::array({process_id, f}), {{"200", json_or_page("Process description", "process")}}));
   for (const auto& process : offered_processes())
     all[fmt::format("/processes/{}/execution", process.id)] = execution_path(process);
 
   all["/jobs"] = get(operation(
       "jobs", "Jobs", "List of jobs, newest first",
+      "Those of the client that asks. The link `next` leads to the next page.",
       Json::array(
           {limit, offset,
            parameter("type", "query", "Only jobs of processes exist", list_of(one_of({"process"}))),
@@ -326,33 +338,40 @@ Json paths() {
         described["explode"] = false;
       }
 
-  Json job = get(operation("job", "Jobs", "Status of a job", Json::array({job_id, f}),
-                           {{"200", json_or_page("Status", "statusInfo")}}));
+  Json job =
+      get(operation("job", "Jobs", "Status of a job",
+                    "State and progress; when it has ended, its results or why it failed.",
+                    Json::array({job_id, f}), {{"200", json_or_page("Status", "statusInfo")}}));
   job["delete"] =
-      operation("dismiss", "Jobs", "Dismiss a job", Json::array({job_id}),
+      operation("dismiss", "Jobs", "Dismiss a job",
+                "It ends as dismissed, whether it waits or runs. One that has ended stays.",
+                Json::array({job_id}),
                 {{"200",
                   {{"description", "The dismissed job"},
                    {"content", content("application/json", schema_ref("statusInfo"))}}}});
   all["/jobs/{jobID}"] = std::move(job);
 
   all["/jobs/{jobID}/events"] = get(operation(
-      "events", "Jobs", "Changes of a job as server-sent events, until it has ended",
+      "events", "Jobs", "Changes of a job as server-sent events",
+      "One event per change until the job has ended. A client that comes back gets what is newer.",
       Json::array({job_id, parameter("Last-Event-ID", "header",
                                      "The last event seen; only what is newer is sent", text())}),
       {{"200",
         {{"description", "Events `status`, their data as JSON"},
          {"content", content("text/event-stream", text())}}},
        {"204", {{"description", "The job has ended and the client has seen it"}}}}));
-  all["/jobs/{jobID}/results"] =
-      get(operation("results", "Jobs", "Results of a job, in the form its request asked for",
-                    Json::array({job_id, f}), result_answers()));
+  all["/jobs/{jobID}/results"] = get(operation("results", "Jobs", "Results of a job",
+                                               "In the form that its request asked for.",
+                                               Json::array({job_id, f}), result_answers()));
   all["/jobs/{jobID}/results/{output}"] = get(result_operation(job_id));
 
-  all["/healthz"] = get(operation("healthz", "Operations", "Whether the server runs", Json::array(),
-                                  plain("It does")));
-  all["/readyz"] = get(operation("readyz", "Operations", "Whether jobs can be taken", Json::array(),
-                                 plain("They can")));
-  all["/metrics"] = get(operation("metrics", "Operations", "Metrics in Prometheus's text format",
+  all["/healthz"] = get(operation("healthz", "Operations", "Whether the server runs",
+                                  "For supervisors.", Json::array(), plain("It does")));
+  all["/readyz"] =
+      get(operation("readyz", "Operations", "Whether jobs can be taken",
+                    "The stores answer. For load balancers.", Json::array(), plain("They can")));
+  all["/metrics"] = get(operation("metrics", "Operations", "Metrics",
+                                  "What docs/operations.md lists, in Prometheus's text format.",
                                   Json::array(), plain("Metrics")));
   return all;
 }

@@ -103,6 +103,7 @@ TEST_F(OpenApi, EveryOperationHasAnIdOfItsOwnADeclaredTagASummaryAndAnswers) {
     EXPECT_TRUE(ids.insert(operation["operationId"]).second) << place;
     for (const auto& tag : operation["tags"]) EXPECT_TRUE(tags.contains(tag)) << place;
     EXPECT_FALSE(operation["summary"].get<std::string>().empty()) << place;
+    EXPECT_FALSE(operation["description"].get<std::string>().empty()) << place;
     bool success = false;
     for (const auto& [status, answer] : operation["responses"].items()) {
       EXPECT_TRUE(std::regex_match(status, std::regex("[1-5]([0-9][0-9]|XX)"))) << place;
