@@ -74,7 +74,7 @@ std::shared_ptr<const Access::Known> Access::known() const {
 }
 
 Result<bool> Access::reload() {
-  const auto issuer_keys = issuer_keys_->reload();
+  auto issuer_keys = issuer_keys_->reload();
   if (state_of(options_.api_keys) == known()->state) return issuer_keys;
   auto now = Known::read(options_.api_keys);
   if (!now) return now.error();

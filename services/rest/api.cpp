@@ -116,11 +116,10 @@ Response Api::handle(const Request& request) const {
 }
 
 void Api::tell(const Record& record, int status) const {
-  const bool known_method = std::ranges::any_of(
+  const bool is_known = std::ranges::any_of(
       kRoutes, [&](const Route& known) { return known.method == record.method; });
-  const std::string_view method =
-      known_method || record.method == "HEAD" || record.method == "OPTIONS" ? record.method
-                                                                            : "other";
+  std::string_view method = "other";
+  if (is_known || record.method == "HEAD" || record.method == "OPTIONS") method = record.method;
   const auto seconds = seconds_since(record.start);
   metrics_.http_request(method, record.route, status, seconds);
   if (options_.log != nullptr)

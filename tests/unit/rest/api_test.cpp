@@ -461,7 +461,11 @@ TEST_F(RestApi, QueryParameterOverridesTheAcceptHeader) {
 TEST_F(RestApi, HealthReadinessAndMetricsAreServed) {
   EXPECT_EQ(text(get("/healthz")), "ok\n");
   EXPECT_EQ(text(get("/readyz")), "ready\n");
-  EXPECT_THAT(text(get("/metrics")), HasSubstr("/healthz"));
+  send("A-METHOD-OF-SOME-CLIENT-THAT-NOBODY-KNOWS", "/healthz");
+  const auto metrics = text(get("/metrics"));
+  for (const auto* method : {"GET", "other"})
+    EXPECT_THAT(metrics, HasSubstr("citymesh_http_requests_total{method=\"" + std::string(method) +
+                                   "\",route=\"/healthz\""));
 }
 
 }  // namespace
