@@ -108,10 +108,6 @@ Result<Job> JobManager::submit(JobSpec spec, std::string idempotency_key, std::s
     if (stored.error().code == ErrorCode::AlreadyExists) return repeated(job);
     return stored.error();
   }
-  if (auto queued = queue_.push(job.id); !queued) {
-    (void)jobs_.erase(job.id);  // never leave a job behind that nobody works on
-    return queued.error();
-  }
   return job;
 }
 

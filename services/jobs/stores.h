@@ -21,7 +21,10 @@ class JobStore {
  public:
   virtual ~JobStore() = default;
 
-  /// AlreadyExists when there is a job with its id, or with its owner and idempotency key.
+  /// Stores the job and, when it is open, queues it for the TaskQueue's claims: both or neither,
+  /// whatever dies meanwhile. (A store that has its queue elsewhere keeps what is still to be sent
+  /// there beside the job.) AlreadyExists when there is a job with its id, or with its owner and
+  /// idempotency key.
   virtual Result<void> insert(const Job& job) = 0;
   virtual Result<Job> get(const std::string& id) = 0;  ///< NotFound
   virtual Result<Job> get_by_key(const std::string& owner,
@@ -81,12 +84,11 @@ struct Claim {
   std::string worker{};
 };
 
-/// Hands jobs to workers, each to one at a time.
+/// Hands jobs to workers, each to one at a time. JobStore::insert fills it.
 class TaskQueue {
  public:
   virtual ~TaskQueue() = default;
 
-  virtual Result<void> push(const std::string& job_id) = 0;
   /// The oldest task that is free or whose lease has run out; none: empty. Waits up to `wait_ms`
   /// for one. The claim's attempt becomes the job's. A lease that ran out counts as a death of the
   /// worker; after the allowed number of deaths the job is failed instead of claimed.

@@ -21,7 +21,7 @@ using sqlite::Durability;
 using sqlite::Failure;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kQueuePoll = std::chrono::milliseconds(200);  // for tasks other processes push
+constexpr auto kQueuePoll = std::chrono::milliseconds(200);  // for tasks of other processes
 
 constexpr std::string_view kDatabase = "job database";
 
@@ -142,9 +142,13 @@ Result<void> EmbeddedStore::insert(const Job& job) {
           ErrorCode::AlreadyExists,
           fmt::format("a job with idempotency key '{}' exists already", job.idempotency_key));
     insert_job(writer, job);
+    if (!is_final(job.state))
+      writer.query("INSERT INTO task (job_id) VALUES (?1)").bind(1, job.id).run();
     return {};
   });
-  if (stored) changes().publish(job);
+  if (!stored) return stored;
+  changes().publish(job);
+  wake_claimers();
   return stored;
 }
 
@@ -344,16 +348,6 @@ Result<void> EmbeddedStore::erase(const std::string& id) {
     if (writer.changed_rows() == 0) return no_such_job(id);
     return {};
   });
-}
-
-Result<void> EmbeddedStore::push(const std::string& job_id) {
-  auto pushed = connections_->write(Durability::Full, [&](Connection& writer) -> Result<void> {
-    if (!find_job(writer, job_id)) return no_such_job(job_id);
-    writer.query("INSERT OR IGNORE INTO task (job_id) VALUES (?1)").bind(1, job_id).run();
-    return {};
-  });
-  if (pushed) wake_claimers();
-  return pushed;
 }
 
 Result<std::optional<Claim>> EmbeddedStore::claim(const std::string& worker, TimeMs lease_ms,

@@ -54,7 +54,6 @@ class EmbeddedStore final : public JobStore, public TaskQueue {
       const std::function<std::optional<TimeMs>(std::uint32_t attempt)>& retry_after) override;
   Result<void> callback_done(const std::string& id) override;
 
-  Result<void> push(const std::string& job_id) override;
   Result<std::optional<Claim>> claim(const std::string& worker, TimeMs lease_ms,
                                      TimeMs wait_ms) override;
   Result<void> heartbeat(const Claim& claim, TimeMs lease_ms) override;

@@ -114,6 +114,7 @@ TEST_F(RestOverSocket, AClientThatAsksAheadAndLeavesTakesItsWaitingJobWithIt) {
   connection.leave();
   while (!is_final(must(service_.jobs().get(open[0].id)).state))
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_EQ(must(service_.jobs().get(open[0].id)).state, JobState::Dismissed);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ class JobService {
     std::string output, name, media_type, content;
   };
 
-  /// The oldest waiting job becomes running. It is in the store a moment before it is in the queue.
+  /// The oldest waiting job becomes running.
   Claim start() {
     auto claim = must(store_->claim("worker-of-the-test", 60'000, 10'000));
     EXPECT_TRUE(claim.has_value());

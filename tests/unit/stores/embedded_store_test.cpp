@@ -42,7 +42,6 @@ class EmbeddedStoreTest : public testing::Test {
   Job queued(const std::string& process = "export-for-simulation") {
     auto job = new_job(process);
     EXPECT_TRUE(store_->insert(job));
-    EXPECT_TRUE(store_->push(job.id));
     return job;
   }
 
@@ -111,7 +110,6 @@ TEST_F(EmbeddedStoreTest, NamesTheJobThatDoesNotExist) {
     EXPECT_EQ(store_->get(id).error().code, ErrorCode::NotFound);
     EXPECT_EQ(store_->update(id, {}, [](Job&) {}).error().code, ErrorCode::NotFound);
     EXPECT_EQ(store_->erase(id).error().code, ErrorCode::NotFound);
-    EXPECT_EQ(store_->push(id).error().code, ErrorCode::NotFound);
   }
   EXPECT_THAT(store_->get("none").error().message, HasSubstr("none"));
 }
@@ -213,11 +211,22 @@ TEST_F(EmbeddedStoreTest, HandsOutTheOldestJobFirst) {
   EXPECT_FALSE(*store_->claim("worker", kLongLease, 0));
 }
 
-TEST_F(EmbeddedStoreTest, PushingTwiceQueuesOnce) {
+TEST_F(EmbeddedStoreTest, AJobIsQueuedInTheStepThatStoresIt) {
   const auto job = queued();
-  ASSERT_TRUE(store_->push(job.id));
-  (void)claimed();
+  EXPECT_EQ(store_->insert(job).error().code, ErrorCode::AlreadyExists);
+  auto ended = new_job();
+  ended.state = JobState::Failed;
+  ASSERT_TRUE(store_->insert(ended));
+  store_ = reopened();  // as after a crash at once
+  EXPECT_EQ(claimed().job_id, job.id);
   EXPECT_FALSE(*store_->claim("worker", kLongLease, 0));
+}
+
+TEST_F(EmbeddedStoreTest, AJobThatCannotBeQueuedIsNotStored) {
+  execute("CREATE TRIGGER full BEFORE INSERT ON task BEGIN SELECT RAISE(ABORT, 'full'); END");
+  const auto job = new_job();
+  EXPECT_FALSE(store_->insert(job));
+  EXPECT_EQ(store_->get(job.id).error().code, ErrorCode::NotFound);
 }
 
 TEST_F(EmbeddedStoreTest, AWaitingClaimWakesUpForANewJob) {
