@@ -20,6 +20,7 @@
 #include "services/callbacks/sender.h"
 #include "services/callbacks/signature.h"
 #include "services/catalogue/catalogue.h"
+#include "services/catalogue/data_version.h"
 #include "services/jobs/job_manager.h"
 #include "services/jobs/retention.h"
 #include "services/rest/results.h"
@@ -45,14 +46,19 @@ LogLevel log_level(std::string_view name) {
 
 TimeMs milliseconds(double seconds) { return static_cast<TimeMs>(std::llround(seconds * 1000)); }
 
-WorkerOptions worker_options(const ServeOptions& options) {
+WorkerOptions worker_options(const ServeOptions& options, const Access& access) {
   const auto threads =
       options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
-  return {.workers = options.workers,
-          .threads_per_job = std::max(1u, threads / options.workers),
-          .lease_ms = milliseconds(options.lease_s),
-          .job_timeout_ms = milliseconds(options.job_timeout_s),
-          .max_job_bytes = options.max_job_bytes};
+  WorkerOptions worker{.workers = options.workers,
+                       .threads_per_job = std::max(1u, threads / options.workers),
+                       .lease_ms = milliseconds(options.lease_s),
+                       .job_timeout_ms = milliseconds(options.job_timeout_s),
+                       .max_job_bytes = options.max_job_bytes};
+  if (options.result_cache == "on")
+    worker.source_version = [data = options.data] { return data_version(data); };
+  // Where clients are told apart, none may learn what another has asked for.
+  worker.share_results = !access.is_required();
+  return worker;
 }
 
 AccessOptions access_options(const ServeOptions& options) {
@@ -248,7 +254,8 @@ Result<void> serve(const ServeOptions& options) {
          return check_callback_uri(uri, allow_private);
        }});
   CallbackSender callbacks(**store, callback_json, log, metrics, *std::move(sending));
-  WorkerPool workers(**store, **store, **results, *source, log, metrics, worker_options(options));
+  WorkerPool workers(**store, **store, **results, *source, log, metrics,
+                     worker_options(options, **access));
   RestServer rest(jobs, metrics, rest_options(options, **access, log));
   RpcServer rpc(jobs, metrics, rpc_options(options, **access, log));
 

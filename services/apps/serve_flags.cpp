@@ -120,6 +120,9 @@ void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> r
   add("--max_job_buildings", options.max_job_buildings, "buildings of a job; 0: no limit");
   add("--max_job_points", options.max_job_points, "points of a job's buildings; 0: no limit");
   add("--max_job_bytes", options.max_job_bytes, "size of a job's results; 0: no limit");
+  add("--result_cache", options.result_cache,
+      "on: a job that asks for what an earlier one asked for, of the same data, gets its results; "
+      "off: every job is worked on");
   add("--keep_results_s", options.keep_results_s,
       "results of an ended job are kept for so long; 0: for ever");
   add("--keep_jobs_s", options.keep_jobs_s, "an ended job is remembered for so long; 0: for ever");

@@ -143,6 +143,8 @@ Result<void> check(const ServeOptions& options) {
     return wrong("--job_timeout_s", options.job_timeout_s, "0 (no limit) or more");
   if (!(options.max_job_area_km2 >= 0) || !std::isfinite(options.max_job_area_km2))
     return wrong("--max_job_area_km2", options.max_job_area_km2, "0 (no limit) or more");
+  if (options.result_cache != "on" && options.result_cache != "off")
+    return wrong("--result_cache", options.result_cache, "on or off");
   for (const auto& [name, kept_s] : {std::pair("--keep_results_s", options.keep_results_s),
                                      std::pair("--keep_jobs_s", options.keep_jobs_s)})
     if (!(kept_s >= 0) || !std::isfinite(kept_s))

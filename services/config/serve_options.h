@@ -57,6 +57,7 @@ struct ServeOptions {
   std::uint64_t max_job_points = 100'000'000;  ///< of its buildings
   std::uint64_t max_job_bytes = 16ull << 30;   ///< of its results
 
+  std::string result_cache = "on";     ///< off: every job is worked on, also what was asked before
   double keep_results_s = 7 * 86400;   ///< after a job's end; 0: for ever
   double keep_jobs_s = 30 * 86400;     ///< the record of an ended job; 0: for ever
   std::uint64_t max_result_bytes = 0;  ///< of all jobs; the oldest results go first; 0: no limit

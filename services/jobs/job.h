@@ -88,6 +88,9 @@ struct Job {
   std::string idempotency_key{};
   std::string owner{};     ///< the client it belongs to; empty: nobody in particular
   std::string trace_id{};  ///< of the request that made it, for the log
+  /// By which a later job that would give the same files finds the results; empty: never.
+  std::string cache_key{};
+  bool cached = false;  ///< the results are those of an earlier job
 };
 
 struct JobFilter {

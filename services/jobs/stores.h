@@ -29,7 +29,9 @@ class JobStore {
   virtual Result<Job> get(const std::string& id) = 0;  ///< NotFound
   virtual Result<Job> get_by_key(const std::string& owner,
                                  const std::string& idempotency_key) = 0;  ///< NotFound
-  virtual Result<std::vector<Job>> list(const JobFilter& filter) = 0;      ///< newest first
+  /// The last successful job with that key that still has its results. NotFound.
+  virtual Result<Job> get_by_cache_key(const std::string& cache_key) = 0;
+  virtual Result<std::vector<Job>> list(const JobFilter& filter) = 0;  ///< newest first
   /// How many jobs match; limit and offset of the filter do not count.
   virtual Result<std::uint64_t> count(const JobFilter& filter) = 0;
 
@@ -54,7 +56,8 @@ class JobStore {
   virtual Result<std::vector<Job>> ended_before(TimeMs time, bool with_results,
                                                 std::uint32_t limit) = 0;
   virtual Result<std::uint64_t> result_bytes() = 0;  ///< of all jobs together
-  /// The list of results of an ended job becomes empty. FailedPrecondition for an open job.
+  /// The list of results of an ended job becomes empty, and its cache key. FailedPrecondition for
+  /// an open job.
   virtual Result<Job> drop_results(const std::string& id, std::string_view message) = 0;
 
   // What ended jobs still have to tell their subscribers.
@@ -113,6 +116,11 @@ class ResultStore {
 
   /// An empty private folder for one attempt; what an earlier attempt left is gone.
   virtual Result<std::filesystem::path> stage(const std::string& job_id, std::uint32_t attempt) = 0;
+  /// Puts files that another job has committed into the folder of a staged attempt, at little cost.
+  /// They are then the attempt's own, whatever becomes of the other job. NotFound when one of them
+  /// is not there any more; some may then have been put.
+  virtual Result<void> reuse(const std::string& from_job_id, const std::vector<ResultFile>& files,
+                             const std::string& job_id, std::uint32_t attempt) = 0;
   virtual Result<void> commit(const std::string& job_id, std::uint32_t attempt) = 0;
   virtual Result<void> discard(const std::string& job_id, std::uint32_t attempt) = 0;
 

@@ -55,6 +55,7 @@ Json status_document(std::string_view base, const Job& job) {
     status["done"] = job.progress.done;
     status["total"] = job.progress.total;
   }
+  if (job.cached) status["cached"] = true;
   if (job.state == JobState::Failed) {
     const auto error = job.error.value_or(Error{ErrorCode::Internal, job.message});
     status["exception"] = Json::parse(problem_json(failed_job_kind(error.code), error.message));

@@ -56,6 +56,7 @@ Json text() { return {{"type", "string"}}; }
 Json url() { return {{"type", "string"}, {"format", "uri"}}; }
 Json whole_number(int minimum) { return {{"type", "integer"}, {"minimum", minimum}}; }
 Json date_time() { return {{"type", "string"}, {"format", "date-time"}}; }
+Json boolean() { return {{"type", "boolean"}}; }
 Json list_of(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
 
 Json object(Json properties, std::initializer_list<const char*> required) {
@@ -142,6 +143,7 @@ Json schemas() {
                {"stage", text()},
                {"done", whole_number(0)},
                {"total", whole_number(0)},
+               {"cached", boolean()},
                {"exception", schema_ref("problem")},
                {"links", list_of(schema_ref("link"))}},
               {"jobID", "status", "type"})},

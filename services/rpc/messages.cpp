@@ -39,6 +39,7 @@ v1::Job to_proto(const Job& job) {
   message.set_started_ms(job.started.value_or(0));
   message.set_finished_ms(job.finished.value_or(0));
   message.set_updated_ms(job.updated);
+  message.set_cached(job.cached);
   for (const auto& file : job.results) {
     auto& result = *message.add_results();
     result.set_output(file.output);

@@ -173,6 +173,16 @@ Result<Job> EmbeddedStore::get_by_key(const std::string& owner,
   });
 }
 
+Result<Job> EmbeddedStore::get_by_cache_key(const std::string& cache_key) {
+  return guarded([&]() -> Result<Job> {
+    const std::scoped_lock lock(connections_->reader_mutex);
+    auto job = find_job_by_cache_key(connections_->reader, cache_key);
+    if (!job)
+      return fail(ErrorCode::NotFound, fmt::format("no results are kept under '{}'", cache_key));
+    return *std::move(job);
+  });
+}
+
 Result<std::vector<Job>> EmbeddedStore::list(const JobFilter& filter) {
   return guarded([&]() -> Result<std::vector<Job>> {
     const auto [processes, states] = filter_texts(filter);
@@ -222,6 +232,7 @@ Result<Job> EmbeddedStore::drop_results(const std::string& id, std::string_view 
           ErrorCode::FailedPrecondition,
           fmt::format("job {} is {}, expected one that has ended", id, to_string(job->state)));
     job->results.clear();
+    job->cache_key.clear();
     job->message = message;
     write_job(writer, *job);
     return *std::move(job);

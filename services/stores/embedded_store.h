@@ -35,6 +35,7 @@ class EmbeddedStore final : public JobStore, public TaskQueue {
   Result<void> insert(const Job& job) override;
   Result<Job> get(const std::string& id) override;
   Result<Job> get_by_key(const std::string& owner, const std::string& idempotency_key) override;
+  Result<Job> get_by_cache_key(const std::string& cache_key) override;
   Result<std::vector<Job>> list(const JobFilter& filter) override;
   Result<std::uint64_t> count(const JobFilter& filter) override;
   Result<std::uint64_t> count_open() override;

@@ -86,14 +86,27 @@ Result<void> flush(const fs::path& path) {
   return {};
 }
 
+Error no_result_file(const std::string& job_id, const std::string& file_name) {
+  return fail(ErrorCode::NotFound,
+              fmt::format("job '{}' has no result file '{}'", job_id, file_name));
+}
+
+/// False when there is no such file.
+Result<bool> link_or_copy(const fs::path& from, const fs::path& to) {
+  if (::link(from.c_str(), to.c_str()) == 0) return true;
+  std::error_code error = last_error();
+  // Some file systems know no links, and a file can only have so many of them.
+  if (error != std::errc::no_such_file_or_directory) fs::copy_file(from, to, error);
+  if (error == std::errc::no_such_file_or_directory) return false;
+  if (error) return unavailable("copy", from, error);
+  return true;
+}
+
 /// Opens a committed file and tells its size.
 Result<std::uint64_t> open_result(const fs::path& root, const std::string& job_id,
                                   const std::string& file_name,
                                   const std::function<Result<void>(int, std::uint64_t)>& use) {
-  const auto missing = [&] {
-    return fail(ErrorCode::NotFound,
-                fmt::format("job '{}' has no result file '{}'", job_id, file_name));
-  };
+  const auto missing = [&] { return no_result_file(job_id, file_name); };
   if (!is_bare(job_id) || !is_bare(file_name)) return missing();
   const auto folder = committed(root / job_id);
   if (!folder) return missing();
@@ -146,6 +159,24 @@ Result<fs::path> FolderResultStore::stage(const std::string& job_id, std::uint32
   fs::create_directory(folder, error);
   if (error) return unavailable("create folder", folder, error);
   return folder;
+}
+
+Result<void> FolderResultStore::reuse(const std::string& from_job_id,
+                                      const std::vector<ResultFile>& files,
+                                      const std::string& job_id, std::uint32_t attempt) {
+  if (!is_bare(from_job_id) || !is_bare(job_id))
+    return fail(ErrorCode::InvalidArgument,
+                fmt::format("'{}' and '{}' are not both job ids", from_job_id, job_id));
+  const auto from = committed(root_ / from_job_id);
+  const auto to = root_ / job_id / (attempt_name(attempt) + std::string(kPartial));
+  for (const auto& file : files) {
+    const auto& name = file.file_name;
+    if (!from || !is_bare(name)) return no_result_file(from_job_id, name);
+    const auto there = link_or_copy(*from / name, to / name);
+    if (!there) return there.error();
+    if (!*there) return no_result_file(from_job_id, name);
+  }
+  return {};
 }
 
 Result<void> FolderResultStore::commit(const std::string& job_id, std::uint32_t attempt) {

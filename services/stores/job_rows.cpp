@@ -77,8 +77,15 @@ constexpr const char* kVersion4 = R"sql(
   CREATE INDEX job_by_callback ON job (callback_due) WHERE callback_due IS NOT NULL;
 )sql";
 
+// `cache_key`: only of jobs with results, so that the index stays small.
+constexpr const char* kVersion5 = R"sql(
+  ALTER TABLE job ADD COLUMN cache_key TEXT NOT NULL DEFAULT '';
+  ALTER TABLE job ADD COLUMN cached INTEGER NOT NULL DEFAULT 0;
+  CREATE INDEX job_by_cache_key ON job (cache_key, finished) WHERE cache_key <> '';
+)sql";
+
 /// Each makes its version out of the one before.
-constexpr const char* kSchemas[] = {kVersion1, kVersion2, kVersion3, kVersion4};
+constexpr const char* kSchemas[] = {kVersion1, kVersion2, kVersion3, kVersion4, kVersion5};
 constexpr std::int64_t kSchemaVersion = std::size(kSchemas);
 
 std::string dump(const json& value) {
@@ -151,17 +158,19 @@ void bind_job(Query& query, const Job& job) {
       .bind(20, results_text(job.results))
       .bind(21, job.idempotency_key)
       .bind(22, job.owner)
-      .bind(23, context_text(job));
+      .bind(23, context_text(job))
+      .bind(24, job.cache_key)
+      .bind(25, std::int64_t{job.cached});
 }
 
 constexpr const char* kInsertJob =
     "INSERT INTO job (" CITYMESH_JOB_COLUMNS
     ") VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18,"
-    " ?19, ?20, ?21, ?22, ?23)";
+    " ?19, ?20, ?21, ?22, ?23, ?24, ?25)";
 constexpr const char* kUpdateJob =
     "UPDATE job SET (" CITYMESH_JOB_COLUMNS
     ") = (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19,"
-    " ?20, ?21, ?22, ?23) WHERE id = ?1";
+    " ?20, ?21, ?22, ?23, ?24, ?25) WHERE id = ?1";
 
 }  // namespace
 
@@ -196,6 +205,8 @@ Job read_job(const Query& row) {
   job.idempotency_key = row.text(20);
   job.owner = row.text(21);
   read_context(row.text(22), job);
+  job.cache_key = row.text(23);
+  job.cached = row.number(24) != 0;
   return job;
 }
 
@@ -213,6 +224,16 @@ std::optional<Job> find_job_by_key(Connection& connection, const std::string& ow
                               " FROM job WHERE owner = ?1 AND idempotency_key = ?2"
                               " AND idempotency_key <> ''");
   row.bind(1, owner).bind(2, key);
+  if (!row.step()) return std::nullopt;
+  return read_job(row);
+}
+
+std::optional<Job> find_job_by_cache_key(Connection& connection, const std::string& key) {
+  auto row = connection.query("SELECT " CITYMESH_JOB_COLUMNS
+                              " FROM job WHERE cache_key = ?1 AND cache_key <> ''"
+                              " AND state = 'successful' AND results <> '[]'"
+                              " ORDER BY finished DESC LIMIT 1");
+  row.bind(1, key);
   if (!row.step()) return std::nullopt;
   return read_job(row);
 }

@@ -12,7 +12,7 @@
 #define CITYMESH_JOB_COLUMNS                                                                      \
   "id, process, inputs, outputs, response_document, state, message, stage, done, total, percent," \
   " error_code, error_message, attempt, dismiss_requested, created, updated, started, finished,"  \
-  " results, idempotency_key, owner, subscriber"
+  " results, idempotency_key, owner, subscriber, cache_key, cached"
 #define CITYMESH_JOB_FILTER                                                     \
   " FROM job WHERE (?1 = '[]' OR process IN (SELECT value FROM json_each(?1)))" \
   " AND (?2 = '[]' OR state IN (SELECT value FROM json_each(?2)))"
@@ -29,6 +29,8 @@ Job read_job(const sqlite::Query& row);
 std::optional<Job> find_job(sqlite::Connection& connection, const std::string& id);
 std::optional<Job> find_job_by_key(sqlite::Connection& connection, const std::string& owner,
                                    const std::string& key);
+/// The last one that ended and has results.
+std::optional<Job> find_job_by_cache_key(sqlite::Connection& connection, const std::string& key);
 void insert_job(sqlite::Connection& connection, const Job& job);
 /// Stores a changed job; `updated` grows by at least one, so that no watcher misses a change.
 void write_job(sqlite::Connection& connection, Job& job);

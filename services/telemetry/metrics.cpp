@@ -59,6 +59,11 @@ struct Metrics::Impl {
           .Name("citymesh_callbacks_total")
           .Help("Attempts to tell the subscribers of jobs, by outcome")
           .Register(registry);
+  prometheus::Counter& cache_hits = prometheus::BuildCounter()
+                                        .Name("citymesh_result_cache_hits_total")
+                                        .Help("Jobs answered from the results of an earlier one")
+                                        .Register(registry)
+                                        .Add({});
   prometheus::Gauge& queue_age = prometheus::BuildGauge()
                                      .Name("citymesh_queue_age_seconds")
                                      .Help("Age of the oldest job that waits for a worker")
@@ -131,6 +136,8 @@ void Metrics::issues(std::string_view code, std::uint64_t count) {
 void Metrics::callback(std::string_view outcome) {
   impl_->callbacks.Add({{"outcome", text_of(outcome)}}).Increment();
 }
+
+void Metrics::results_reused() { impl_->cache_hits.Increment(); }
 
 void Metrics::set_queue(std::uint64_t jobs, double oldest_age_s) {
   impl_->queue_length.Set(static_cast<double>(jobs));

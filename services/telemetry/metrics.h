@@ -26,6 +26,8 @@ class Metrics {
   void issues(std::string_view code, std::uint64_t count);
   /// An attempt to tell a subscriber. `outcome`: delivered, retried (tried again later), given_up.
   void callback(std::string_view outcome);
+  /// A job was answered from those of an earlier one.
+  void results_reused();
   void set_queue(std::uint64_t jobs, double oldest_age_s);
 
   /// `route` is the pattern (`/jobs/{id}`), never the path: labels must stay few.

@@ -21,6 +21,7 @@
 #include "services/offer/offer.h"
 #include "services/telemetry/log.h"
 #include "services/telemetry/metrics.h"
+#include "services/worker/result_cache.h"
 
 namespace citymesh {
 namespace {
@@ -42,6 +43,8 @@ struct Run {
   std::atomic<StopReason> reason{StopReason::None};
   Clock::time_point started = Clock::now();
   Clock::time_point next_heartbeat{};
+  std::string cache_key{};  // of the results; empty: not to be found by later jobs
+  bool cached = false;
 
   void end(StopReason why) {
     auto none = StopReason::None;
@@ -91,11 +94,14 @@ struct WorkerPool::Impl {
         source(std::move(source_in)),
         log(log_in),
         metrics(metrics_in),
-        options(options_in) {}
+        options(std::move(options_in)) {}
 
   void claim_and_work(const std::stop_token& shutdown, const std::string& worker);
   void work(const Claim& claim, const std::stop_token& shutdown);
   Result<ProcessOutcome> run_job(const Job& job, Run& run, std::filesystem::path& folder);
+  Result<ProcessOutcome> answer(const Job& job, Run& run, std::filesystem::path& folder);
+  Result<ProcessOutcome> compute(const Job& job, Run& run, const std::filesystem::path& folder);
+  std::string key_of(const Job& job) const;
   std::string_view finish(const Run& run, std::string_view process, Result<ProcessOutcome> outcome,
                           const std::filesystem::path& folder);
   std::string_view hand_back(const Run& run);
@@ -125,8 +131,8 @@ struct WorkerPool::Impl {
 
 WorkerPool::WorkerPool(JobStore& jobs, TaskQueue& queue, ResultStore& results, SourceFactory source,
                        Log& log, Metrics& metrics, WorkerOptions options)
-    : impl_(
-          std::make_unique<Impl>(jobs, queue, results, std::move(source), log, metrics, options)) {}
+    : impl_(std::make_unique<Impl>(jobs, queue, results, std::move(source), log, metrics,
+                                   std::move(options))) {}
 
 WorkerPool::~WorkerPool() { stop(); }
 
@@ -242,17 +248,7 @@ void WorkerPool::Impl::work(const Claim& claim, const std::stop_token& shutdown)
 Result<ProcessOutcome> WorkerPool::Impl::run_job(const Job& job, Run& run,
                                                  std::filesystem::path& folder) {
   try {
-    auto staged = results.stage(job.id, run.claim.attempt);
-    if (!staged) return staged.error();
-    folder = *staged;
-    RunContext context;
-    context.stop = run.stop.get_token();
-    context.on_progress = progress_sink(run, job);
-    context.now_s = [] {
-      return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
-    };
-    context.threads = std::max(1u, options.threads_per_job);
-    return run_offered(job.spec.process, job.spec.inputs_json, source, folder, context);
+    return answer(job, run, folder);
   } catch (const std::bad_alloc&) {
     return fail(ErrorCode::ResourceExhausted,
                 "not enough memory for this job; try a smaller selection");
@@ -261,6 +257,54 @@ Result<ProcessOutcome> WorkerPool::Impl::run_job(const Job& job, Run& run,
   } catch (...) {
     return fail(ErrorCode::Internal, "unexpected error of unknown type");
   }
+}
+
+/// From the results of an earlier job, or by work.
+Result<ProcessOutcome> WorkerPool::Impl::answer(const Job& job, Run& run,
+                                                std::filesystem::path& folder) {
+  const auto stage = [&]() -> Result<void> {
+    auto staged = results.stage(job.id, run.claim.attempt);
+    if (!staged) return staged.error();
+    folder = *std::move(staged);
+    return {};
+  };
+  if (auto staged = stage(); !staged) return staged.error();
+  const auto key = key_of(job);
+  if (key.empty()) return compute(job, run, folder);
+
+  if (const auto earlier = reuse_results(jobs, results, key, run.claim)) {
+    log.info("results_reused",
+             {{"job_id", job.id}, {"of", earlier->id}, {"trace_id", job.trace_id}});
+    run.cached = true;
+    run.cache_key = key;
+    ProcessOutcome outcome;
+    for (const auto& file : earlier->results)
+      outcome.files.push_back({file.output, file.file_name, file.media_type});
+    outcome.message = earlier->message;
+    if (!earlier->cached) outcome.message += "; from the results of an earlier job";
+    return outcome;
+  }
+  if (auto staged = stage(); !staged) return staged.error();
+  auto outcome = compute(job, run, folder);
+  if (outcome && key_of(job) == key) run.cache_key = key;  // nothing changed while it was read
+  return outcome;
+}
+
+std::string WorkerPool::Impl::key_of(const Job& job) const {
+  if (!options.source_version) return {};
+  return cache_key(job, options.source_version(), options.share_results);
+}
+
+Result<ProcessOutcome> WorkerPool::Impl::compute(const Job& job, Run& run,
+                                                 const std::filesystem::path& folder) {
+  RunContext context;
+  context.stop = run.stop.get_token();
+  context.on_progress = progress_sink(run, job);
+  context.now_s = [] {
+    return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+  };
+  context.threads = std::max(1u, options.threads_per_job);
+  return run_offered(job.spec.process, job.spec.inputs_json, source, folder, context);
 }
 
 /// Ends the attempt in store and queue; returns the word for log and metrics.
@@ -298,6 +342,7 @@ std::string_view WorkerPool::Impl::finish(const Run& run, std::string_view proce
   if (!files) return close(run, JobState::Failed, files.error().message, files.error(), {});
   if (auto committed = results.commit(claim.job_id, claim.attempt); !committed)
     return close(run, JobState::Failed, committed.error().message, committed.error(), {});
+  if (run.cached) metrics.results_reused();
   for (const auto& [stage, seconds] : outcome->timings.stages_s)
     metrics.stage_took(process, stage, seconds);
   const auto& counts = outcome->buildings;
@@ -345,6 +390,8 @@ std::string_view WorkerPool::Impl::close(const Run& run, JobState state, std::st
     changed.error = std::move(error);
     if (state == JobState::Successful) {
       changed.results = std::move(files);
+      changed.cache_key = run.cache_key;
+      changed.cached = run.cached;
       changed.percent = 100;
       changed.progress.done = changed.progress.total;
     }

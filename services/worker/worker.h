@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <string>
 
 #include "core/base/result.h"
 #include "services/jobs/stores.h"
@@ -19,6 +21,11 @@ struct WorkerOptions {
   TimeMs job_timeout_ms = 0;          ///< a job that runs longer is failed; 0: no limit
   std::uint64_t max_job_bytes = 0;    ///< a job whose results are larger is failed; 0: no limit
   TimeMs progress_interval_ms = 200;  ///< least time between two stored progress reports
+
+  /// Text that differs whenever what jobs read does; empty: unknown. With it a job that asks for
+  /// what an earlier one asked for gets the results of that one; none: every job is worked on.
+  std::function<std::string()> source_version{};
+  bool share_results = false;  ///< also with jobs of other owners
 };
 
 /// Threads that claim jobs, run them and store their results. They keep nothing between jobs, and

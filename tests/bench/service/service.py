@@ -61,7 +61,7 @@ class Bench:
         self.services += 1
         state = state or self.folder / f"state-{self.services}"
         return harness.Service(data or self.city, state, "--workers", "1", "--threads", "1", "--max_open_jobs", "1000000",
-                               "--max_connections", "4000")
+                               "--max_connections", "4000", "--result_cache", "off")
 
     def row(self, what, target, measured, holds):
         self.rows.append((what, target, measured, "yes" if holds else "no"))

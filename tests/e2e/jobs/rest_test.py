@@ -1,12 +1,14 @@
 """The job cycle over REST against the real program, and what it does with bad requests."""
 import http.client
 import json
+import shutil
 import socket
 import tempfile
 import unittest
+from pathlib import Path
 from urllib.parse import urlsplit
 
-from service import (CITY, EXCEPTIONS, EXECUTION, LIMIT_S, OPEN, SEA, SMALL, ServiceTest, delivered_names, is_closed, make_big_city,
+from service import (BERLIN, CITY, EXCEPTIONS, EXECUTION, LIMIT_S, OPEN, SEA, SMALL, ServiceTest, delivered_names, is_closed, make_big_city,
                      read_obj)
 
 
@@ -224,6 +226,38 @@ class JobCycle(ServiceTest):
         metrics = self.service.get("/metrics").body.decode()
         self.assertIn('route="/jobs/{id}"', metrics)
         self.assertIn("export-for-simulation", metrics)
+
+
+class AskedBefore(ServiceTest):
+    result_cache = "on"
+
+    @classmethod
+    def setUpClass(cls):
+        data = tempfile.TemporaryDirectory(prefix="citymesh-e2e-data-")
+        cls.addClassCleanup(data.cleanup)
+        cls.data = Path(data.name)
+        shutil.copy(BERLIN / "3910_5817.gml", cls.data)
+        super().setUpClass()
+
+    def done(self, inputs):
+        status = self.service.wait(self.service.execute(inputs))
+        self.assertEqual(status["status"], "successful", status)
+        files = {link["title"]: self.service.get(link["href"]) for link in status["links"] if link["rel"] == "item"}
+        self.assertEqual({answer.status for answer in files.values()}, {200})
+        return status, {name: answer.body for name, answer in files.items()}
+
+    def test_same_request_is_answered_from_the_results_of_the_first_until_the_data_change(self):
+        first, files = self.done({"bbox": SMALL})
+        self.assertNotIn("cached", first)
+        again, same_files = self.done({"bbox": SMALL})
+        self.assertIs(again["cached"], True)
+        self.assertIn("earlier job", again["message"])
+        self.assertEqual(same_files, files)
+        self.assertNotIn("cached", self.done({"bbox": SMALL, "formats": ["stl"]})[0])
+        self.assertIn("citymesh_result_cache_hits_total 1", self.service.get("/metrics").body.decode())
+
+        (self.data / "3910_5817.gml").touch()
+        self.assertNotIn("cached", self.done({"bbox": SMALL})[0])
 
 
 class LongJobs(ServiceTest):

@@ -76,6 +76,8 @@ TEST_F(EmbeddedStoreTest, KeepsEveryFieldOfAJobOverAReopening) {
   job.finished = job.created + 2;
   job.owner = "key:city";
   job.trace_id = "4bf92f3577b34da6a3ce929d0e0e4736";
+  job.cache_key = "0123abcd";
+  job.cached = true;
   job.results = {{"obj", "model.obj", "model/obj", 1234}};
   ASSERT_TRUE(store_->insert(job));
 
@@ -99,6 +101,8 @@ TEST_F(EmbeddedStoreTest, KeepsEveryFieldOfAJobOverAReopening) {
   EXPECT_EQ(read->finished, job.finished);
   EXPECT_EQ(read->owner, "key:city");
   EXPECT_EQ(read->trace_id, job.trace_id);
+  EXPECT_EQ(read->cache_key, "0123abcd");
+  EXPECT_TRUE(read->cached);
   ASSERT_EQ(read->results.size(), 1u);
   EXPECT_EQ(read->results[0].file_name, "model.obj");
   EXPECT_EQ(read->results[0].bytes, 1234u);
@@ -475,6 +479,87 @@ TEST_F(EmbeddedStoreTest, JobsOfTheSecondVersionBelongToNobodyAndKeepTheirKeys) 
   EXPECT_EQ(store_->insert(job).error().code, ErrorCode::AlreadyExists);
   job.owner = "city";
   EXPECT_TRUE(store_->insert(job));
+}
+
+/// What the third and fourth versions added, with a job of each kind.
+constexpr const char* kVersion3 = R"sql(
+  ALTER TABLE job ADD COLUMN owner TEXT NOT NULL DEFAULT '';
+  DROP INDEX job_by_key;
+  CREATE UNIQUE INDEX job_by_key ON job (owner, idempotency_key) WHERE idempotency_key <> '';
+  CREATE INDEX job_by_owner ON job (owner, created DESC);
+  CREATE INDEX job_open_by_owner ON job (owner) WHERE state IN ('accepted', 'running');
+  UPDATE job SET owner = 'city';
+  PRAGMA user_version = 3;
+)sql";
+constexpr const char* kVersion4 = R"sql(
+  ALTER TABLE job ADD COLUMN subscriber TEXT NOT NULL DEFAULT '{}';
+  ALTER TABLE job ADD COLUMN callback_attempts INTEGER NOT NULL DEFAULT 0;
+  ALTER TABLE job ADD COLUMN callback_due INTEGER;
+  CREATE INDEX job_by_callback ON job (callback_due) WHERE callback_due IS NOT NULL;
+  UPDATE job SET subscriber = '{"success":"https://portal.example/done"}', callback_due = 5000
+    WHERE state = 'successful';
+  PRAGMA user_version = 4;
+)sql";
+
+TEST_F(EmbeddedStoreTest, JobsOfTheThirdVersionKeepTheirOwners) {
+  store_.reset();
+  std::filesystem::remove_all(folder_ / "jobs.sqlite");
+  for (const auto* step : {kVersion1, kVersion2, kVersion3}) execute(step);
+  for (int time = 0; time < 2; ++time) {
+    store_ = reopened();
+    ASSERT_TRUE(store_);
+    const auto jobs = store_->list({.owner = "city"});
+    ASSERT_TRUE(jobs) << jobs.error().message;
+    ASSERT_EQ(jobs->size(), 2u);
+    EXPECT_EQ(jobs->at(1).message, "2 buildings");
+    EXPECT_TRUE(jobs->at(1).spec.subscriber.empty());
+    EXPECT_EQ(*store_->count_open_of("city"), 1u);
+    EXPECT_EQ(store_->get_by_key("city", "old key")->id, jobs->at(0).id);
+  }
+  EXPECT_EQ(claimed().job_id, "00000000-0000-4000-8000-000000000002");
+}
+
+TEST_F(EmbeddedStoreTest, JobsOfTheFourthVersionKeepTheirSubscribersAndAreNoTwins) {
+  store_.reset();
+  std::filesystem::remove_all(folder_ / "jobs.sqlite");
+  for (const auto* step : {kVersion1, kVersion2, kVersion3, kVersion4}) execute(step);
+  for (int time = 0; time < 2; ++time) {
+    store_ = reopened();
+    ASSERT_TRUE(store_);
+    const auto done = store_->get("00000000-0000-4000-8000-000000000001");
+    ASSERT_TRUE(done) << done.error().message;
+    EXPECT_EQ(done->spec.subscriber.success_uri, "https://portal.example/done");
+    EXPECT_EQ(done->cache_key, "");
+    EXPECT_FALSE(done->cached);
+  }
+  EXPECT_EQ(store_->get_by_cache_key("").error().code, ErrorCode::NotFound);
+  const auto due = store_->take_callback(6000, [](std::uint32_t) { return std::nullopt; });
+  ASSERT_TRUE(due && *due);
+  EXPECT_EQ((*due)->job.id, "00000000-0000-4000-8000-000000000001");
+}
+
+TEST_F(EmbeddedStoreTest, TheLastJobThatHasResultsIsFoundByItsCacheKey) {
+  const auto stored = [this](TimeMs finished, JobState state, const std::string& key) {
+    auto job = new_job();
+    job.state = state;
+    job.cache_key = key;
+    job.finished = finished;
+    if (state == JobState::Successful) job.results = {{"obj", "model.obj", "model/obj", 4}};
+    EXPECT_TRUE(store_->insert(job));
+    return job.id;
+  };
+  const auto first = stored(1000, JobState::Successful, "key");
+  const auto last = stored(3000, JobState::Successful, "key");
+  stored(2000, JobState::Successful, "other");
+  stored(4000, JobState::Failed, "key");
+  stored(5000, JobState::Successful, "");
+  EXPECT_EQ(store_->get_by_cache_key("key")->id, last);
+  ASSERT_TRUE(store_->drop_results(last, "results have expired"));
+  EXPECT_EQ(store_->get(last)->cache_key, "");
+  EXPECT_EQ(store_->get_by_cache_key("key")->id, first);
+  ASSERT_TRUE(store_->erase(first));
+  for (const auto* none : {"key", "", "ke"})
+    EXPECT_EQ(store_->get_by_cache_key(none).error().code, ErrorCode::NotFound);
 }
 
 TEST_F(EmbeddedStoreTest, AnIdempotencyKeyBelongsToOneJobUntilThatIsErased) {

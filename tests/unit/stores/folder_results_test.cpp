@@ -103,6 +103,58 @@ TEST_F(FolderResultsTest, StagingAnOldAttemptLeavesItsSuccessorAlone) {
   EXPECT_EQ(*read(), "owner");
 }
 
+TEST_F(FolderResultsTest, FilesOfAnotherJobAreReusedAtNoCostAndStayWhenThatOneGoes) {
+  write(1, "v 0 0 0");
+  ASSERT_TRUE(store_->commit(job_, 1));
+  const auto other = new_job_id();
+  const auto staged = store_->stage(other, 1);
+  ASSERT_TRUE(staged);
+  const std::vector<ResultFile> files{{"obj", "model.obj", "model/obj", 7}};
+  ASSERT_TRUE(store_->reuse(job_, files, other, 1));
+  EXPECT_EQ(std::filesystem::hard_link_count(*staged / "model.obj"), 2u);
+  EXPECT_EQ(store_->read(other, "model.obj", 0, 10).error().code, ErrorCode::NotFound);
+  ASSERT_TRUE(store_->commit(other, 1));
+  ASSERT_TRUE(store_->erase(job_));
+  EXPECT_EQ(*store_->read(other, "model.obj", 0, 10), "v 0 0 0");
+}
+
+TEST_F(FolderResultsTest, WhatCannotBeLinkedIsCopied) {
+  write(1, "v 0 0 0");
+  ASSERT_TRUE(store_->commit(job_, 1));
+  const auto other = new_job_id();
+  ASSERT_TRUE(store_->stage(other, 1));
+  // A file system of its own, where there is one.
+  const auto elsewhere = std::filesystem::path("/dev/shm") / job_;
+  std::error_code none;
+  std::filesystem::copy(folder_ / "results" / job_, elsewhere,
+                        std::filesystem::copy_options::recursive, none);
+  if (none) GTEST_SKIP() << none.message();
+  ASSERT_TRUE(store_->erase(job_));
+  std::filesystem::create_symlink(elsewhere, folder_ / "results" / job_);
+  EXPECT_TRUE(store_->reuse(job_, {{"obj", "model.obj", "model/obj", 7}}, other, 1));
+  EXPECT_TRUE(store_->commit(other, 1));
+  std::filesystem::remove_all(elsewhere);
+  EXPECT_EQ(*store_->read(other, "model.obj", 0, 10), "v 0 0 0");
+}
+
+TEST_F(FolderResultsTest, ReusesNothingThatIsGoneOrElsewhere) {
+  write(1, "v 0 0 0");
+  const std::vector<ResultFile> files{{"obj", "model.obj", "model/obj", 7}};
+  const auto other = new_job_id();
+  ASSERT_TRUE(store_->stage(other, 1));
+  EXPECT_EQ(store_->reuse(job_, files, other, 1).error().code, ErrorCode::NotFound);  // not yet
+  ASSERT_TRUE(store_->commit(job_, 1));
+  std::ofstream(folder_ / "outside") << "outside";
+  for (const auto* name : {"missing", "../../../outside", "/etc/passwd", "..", ""})
+    EXPECT_EQ(store_->reuse(job_, {{"obj", name, "model/obj", 7}}, other, 1).error().code,
+              ErrorCode::NotFound)
+        << name;
+  EXPECT_FALSE(store_->reuse("../results/" + job_, files, other, 1));
+  EXPECT_FALSE(store_->reuse(job_, files, "../results/" + other, 1));
+  ASSERT_TRUE(store_->erase(job_));
+  EXPECT_EQ(store_->reuse(job_, files, other, 1).error().code, ErrorCode::NotFound);
+}
+
 TEST_F(FolderResultsTest, DiscardLeavesNothingBehind) {
   write(1, "x");
   ASSERT_TRUE(store_->discard(job_, 1));
