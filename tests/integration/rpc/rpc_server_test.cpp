@@ -253,6 +253,20 @@ TEST_F(RpcServerTest, ResultsThatHaveExpiredAreNotFoundAndNotListed) {
   EXPECT_EQ(job.results_size(), 0);
 }
 
+TEST_F(RpcServerTest, AJobTellsWhetherItsResultsAreThoseOfAnEarlierOne) {
+  for (const bool cached : {false, true}) {
+    const auto id = submitted();
+    const auto claim = started();
+    ASSERT_TRUE(
+        store_->update(id, claim.attempt, [cached](Job& changed) { changed.cached = cached; }));
+    succeed(claim, "v 0 0 0");
+    grpc::ClientContext context;
+    v1::Job job;
+    ASSERT_TRUE(stub_->Get(&context, id_of(id), &job).ok());
+    EXPECT_EQ(job.cached(), cached);
+  }
+}
+
 TEST_F(RpcServerTest, CallsAreCounted) {
   submitted();
   EXPECT_THAT(metrics_.text(),

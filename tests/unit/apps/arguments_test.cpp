@@ -125,6 +125,12 @@ TEST(ServeOptions, NameTheSettingThatCannotBeUsed) {
   EXPECT_TRUE(check(options));
   options.lease_s = -1;
   EXPECT_THAT(check(options).error().message, HasSubstr("--lease_s is -1"));
+  options.lease_s = 30;
+  options.result_cache = "maybe";
+  EXPECT_THAT(check(options).error().message,
+              HasSubstr("--result_cache is maybe, expected on or off"));
+  options.result_cache = "off";
+  EXPECT_TRUE(check(options));
 }
 
 TEST(ServeOptions, WebOriginsAreWhatBrowsersSend) {
