@@ -190,7 +190,7 @@ TEST_F(ResultCacheTest, AJobThatFailedOrWasDismissedAnswersNone) {
   work();
   EXPECT_EQ(ended(submitted()).state, JobState::Failed);
   const auto dismissed = submitted();
-  running(dismissed);
+  while (run < 2) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   ASSERT_TRUE(jobs_.dismiss(dismissed));
   EXPECT_FALSE(done().cached);
   EXPECT_EQ(runs_, 3);
