@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "tests/support/citydb/citydb_test.h"
@@ -295,6 +296,146 @@ TEST_F(Loaders, WhatDoesNotFitLeavesNothingBehind) {
   EXPECT_FALSE(load(*url, {.schema = schema}, folder_ / "bad.gml"));
   EXPECT_EQ(lines(*url, "SELECT count(*) FROM cityobject"), "0\n");
   EXPECT_FALSE(load(*url, {.schema = schema}, folder_ / "missing.gml"));
+}
+
+// ---- the loader and what was written by hand ---------------------------------------------------
+
+class Fixtures : public Loaders {
+ protected:
+  /// The house of the fixture as it was written by hand, and as the loader stores it.
+  void make(const Schema& schema) {
+    const auto url = server().create_citydb(schema);
+    ASSERT_TRUE(url) << url.error().message;
+    by_hand_ = *url;
+    const auto sql = citydb_file(schema.major == 4 ? "fixture_v4.sql" : "fixture_v5.sql");
+    ASSERT_TRUE(sql) << sql.error().message;
+    auto database = Database::open(by_hand_);
+    ASSERT_TRUE(database) << database.error().message;
+    const auto stored = database->run(*sql);
+    ASSERT_TRUE(stored) << stored.error().message;
+    by_loader_ = loaded(schema, CITYMESH_CITYDB_FIXTURE);
+  }
+
+  void expect_the_same(const std::string& sql, std::size_t rows) {
+    const std::string expected = lines(by_hand_, sql);
+    EXPECT_EQ(lines(by_loader_, sql), expected) << sql;
+    EXPECT_EQ(static_cast<std::size_t>(std::count(expected.begin(), expected.end(), '\n')), rows)
+        << expected;
+  }
+
+ private:
+  std::string by_hand_{}, by_loader_{};
+};
+
+TEST_F(Fixtures, OfVersion4AreWhatTheLoaderMakesOfTheFile) {
+  ASSERT_NO_FATAL_FAILURE(make({.major = 4}));
+  const std::string current = " termination_date IS NULL AND objectclass_id NOT IN (14, 16) ";
+  expect_the_same(
+      "SELECT gmlid, objectclass_id, name, description, ST_AsText(envelope),"
+      " relative_to_terrain FROM cityobject WHERE" +
+          current + "ORDER BY 1",
+      12);
+  expect_the_same("SELECT gmlid, creation_date FROM cityobject WHERE" + current +
+                      "AND objectclass_id IN (25, 26, 27) ORDER BY 1",
+                  3);
+  expect_the_same(
+      "SELECT o.gmlid, s.gmlid, coalesce(is_xlink, 0), coalesce(is_reverse, 0),"
+      " ST_AsText(geometry), ST_SRID(geometry) FROM surface_geometry s"
+      " JOIN cityobject o ON o.id = s.cityobject_id WHERE" +
+          current + "AND objectclass_id <> 27 AND geometry IS NOT NULL ORDER BY 1, 2",
+      19);
+  expect_the_same(
+      "SELECT o.gmlid, parent_id IS NULL, is_solid, is_composite, is_triangulated,"
+      " is_xlink, is_reverse FROM surface_geometry s"
+      " JOIN cityobject o ON o.id = s.cityobject_id WHERE" +
+          current +
+          "AND objectclass_id <> 27 AND geometry IS NULL AND o.gmlid <> 'roof'"
+          " ORDER BY 1, 2",
+      10);
+  expect_the_same(
+      "SELECT o.gmlid, p.gmlid, r.gmlid, b.class, b.function, year_of_construction,"
+      " roof_type, measured_height, measured_height_unit, storeys_above_ground,"
+      " storey_heights_above_ground, storey_heights_ag_unit, lod1_solid_id,"
+      " lod2_solid_id IS NOT NULL FROM building b JOIN cityobject o ON o.id = b.id"
+      " LEFT JOIN cityobject p ON p.id = building_parent_id"
+      " JOIN cityobject r ON r.id = building_root_id"
+      " WHERE o.termination_date IS NULL ORDER BY 1",
+      2);
+  expect_the_same(
+      "SELECT o.gmlid, b.gmlid, room_id, building_installation_id,"
+      " lod2_multi_surface_id IS NULL, lod3_multi_surface_id IS NULL,"
+      " lod4_multi_surface_id IS NULL FROM thematic_surface t"
+      " JOIN cityobject o ON o.id = t.id JOIN cityobject b ON b.id = building_id"
+      " ORDER BY 1",
+      8);
+  expect_the_same(
+      "SELECT o.gmlid, w.gmlid, address_id, lod3_multi_surface_id IS NULL"
+      " FROM opening p JOIN cityobject o ON o.id = p.id"
+      " JOIN opening_to_them_surface l ON l.opening_id = p.id"
+      " JOIN cityobject w ON w.id = l.thematic_surface_id",
+      1);
+  expect_the_same(
+      "SELECT o.gmlid, b.gmlid, function FROM building_installation i"
+      " JOIN cityobject o ON o.id = i.id JOIN cityobject b ON b.id = building_id",
+      1);
+  expect_the_same(
+      "SELECT b.gmlid, street, house_number, po_box, zip_code, city, state, country"
+      " FROM address a JOIN address_to_building l ON l.address_id = a.id"
+      " JOIN cityobject b ON b.id = l.building_id",
+      1);
+  expect_the_same(
+      "SELECT o.gmlid, g.attrname, g.datatype, g.strval, g.intval, g.realval,"
+      " p.attrname, r.attrname FROM cityobject_genericattrib g"
+      " JOIN cityobject o ON o.id = g.cityobject_id"
+      " LEFT JOIN cityobject_genericattrib p ON p.id = g.parent_genattrib_id"
+      " JOIN cityobject_genericattrib r ON r.id = g.root_genattrib_id"
+      " WHERE g.attrname NOT IN ('page', 'inspected', 'area') ORDER BY o.gmlid, g.id",
+      6);
+}
+
+TEST_F(Fixtures, OfVersion5AreWhatTheLoaderMakesOfTheFile) {
+  for (const int minor : {0, 1}) {
+    ASSERT_NO_FATAL_FAILURE(make({.major = 5, .minor = minor}));
+    const std::string current =
+        " f.termination_date IS NULL AND f.objectclass_id NOT IN (500, 502) ";
+    expect_the_same("SELECT objectid, objectclass_id, ST_AsText(envelope) FROM feature f WHERE" +
+                        current + "ORDER BY 1",
+                    12);
+    expect_the_same(
+        "SELECT f.objectid, p.name, p.namespace_id, p.datatype_id, p.val_lod,"
+        " g.feature_id = f.id, ST_AsText(g.geometry), ST_SRID(g.geometry),"
+        " g.geometry_properties->>'type', (SELECT string_agg(concat_ws(' ', c->>'type',"
+        " CASE WHEN c->>'type' = '5' THEN c->>'objectId' END, c->>'parent',"
+        " c->>'geometryIndex', c->>'isReversed'), ',' ORDER BY at)"
+        " FROM jsonb_array_elements(g.geometry_properties::jsonb->'children')"
+        " WITH ORDINALITY AS t(c, at)) FROM property p"
+        " JOIN feature f ON f.id = p.feature_id"
+        " JOIN geometry_data g ON g.id = p.val_geometry_id WHERE" +
+            current + "AND f.objectid NOT IN ('roof', 'antenna') ORDER BY 1, 2",
+        9);
+    expect_the_same(
+        "SELECT f.objectid, p.name, p.namespace_id, p.datatype_id, p.val_relation_type,"
+        " m.objectid FROM property p JOIN feature f ON f.id = p.feature_id"
+        " JOIN feature m ON m.id = p.val_feature_id WHERE" +
+            current + "ORDER BY 1, 2, 6",
+        11);
+    expect_the_same(
+        "SELECT p.name, p.namespace_id, p.datatype_id, m.name, p.val_int, p.val_double,"
+        " p.val_string, p.val_timestamp, p.val_uom, p.val_array::jsonb FROM property p"
+        " LEFT JOIN property m ON m.id = p.parent_id"
+        " JOIN feature f ON f.id = p.feature_id WHERE" +
+            current +
+            "AND f.objectid = 'house' AND p.val_feature_id IS NULL AND p.val_geometry_id"
+            " IS NULL AND p.name NOT IN ('page', 'inspected', 'area', 'address')"
+            " ORDER BY p.name, p.val_string",
+        20);
+    expect_the_same(
+        "SELECT f.objectid, p.name, p.namespace_id, p.datatype_id, street,"
+        " house_number, po_box, zip_code, city, state, country FROM property p"
+        " JOIN feature f ON f.id = p.feature_id"
+        " JOIN address a ON a.id = p.val_address_id",
+        1);
+  }
 }
 
 }  // namespace
