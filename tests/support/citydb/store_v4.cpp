@@ -3,6 +3,7 @@
 #include <map>
 #include <utility>
 
+#include "tests/support/citydb/columns_v4.h"
 #include "tests/support/citydb/copy_table.h"
 #include "tests/support/citydb/store.h"
 
@@ -13,65 +14,10 @@ using source::PolygonUse;
 using source::RawObject;
 using source::RawShape;
 
-int object_class(const RawObject& object) {
-  switch (object.kind) {
-    case ObjectKind::Building:
-      return 26;
-    case ObjectKind::BuildingPart:
-      return 25;
-    case ObjectKind::BuildingInstallation:
-      return object.inside ? 28 : 27;
-  }
-  return 0;
-}
-
-// 0: the version has no class for it.
-int surface_class(SurfaceType type) {
-  switch (type) {
-    case SurfaceType::CeilingSurface:
-      return 30;
-    case SurfaceType::InteriorWallSurface:
-      return 31;
-    case SurfaceType::FloorSurface:
-      return 32;
-    case SurfaceType::RoofSurface:
-      return 33;
-    case SurfaceType::WallSurface:
-      return 34;
-    case SurfaceType::GroundSurface:
-      return 35;
-    case SurfaceType::ClosureSurface:
-      return 36;
-    case SurfaceType::Window:
-      return 38;
-    case SurfaceType::Door:
-      return 39;
-    case SurfaceType::OuterCeilingSurface:
-      return 60;
-    case SurfaceType::OuterFloorSurface:
-      return 61;
-    case SurfaceType::Unknown:
-      break;
-  }
-  return 0;
-}
-
-bool is_opening(SurfaceType type) {
-  return type == SurfaceType::Window || type == SurfaceType::Door;
-}
-
 /// What a row of surface_geometry above the polygons is.
 struct Flags {
   bool solid = false, composite = false;
 };
-
-// Codelist values that repeat share one column.
-std::string joined_values(const std::string& text) {
-  std::string joined;
-  for (const std::string& value : split_values(text))
-    joined += (joined.empty() ? "" : "--/\\--") + value;
-  return joined;
-}
 
 class StoreV4 final : public Store {
  public:
@@ -124,7 +70,7 @@ class StoreV4 final : public Store {
                   const std::vector<std::int64_t>& ids, Box3& all) {
     const RawObject& object = feature.objects()[index];
     const std::int64_t id = ids[index];
-    std::vector<Cell> columns{{"id", id}, {"objectclass_id", std::int64_t{object_class(object)}}};
+    std::vector<Cell> columns{{"id", id}, {"objectclass_id", std::int64_t{class_v4(object)}}};
     const bool installation = object.kind == ObjectKind::BuildingInstallation;
     const auto parent = object.parent < 0 ? id : ids[static_cast<std::size_t>(object.parent)];
     if (installation) {
@@ -138,7 +84,7 @@ class StoreV4 final : public Store {
     add_surfaces(feature, index, id, box);
     all.add(box);
 
-    std::vector<Cell> row = cityobject(feature, id, object_class(object), object.gml_id,
+    std::vector<Cell> row = cityobject(feature, id, class_v4(object), object.gml_id,
                                        " object " + std::to_string(index), index == 0 ? all : box);
     add_attributes(object, id, installation, columns, row);
     cityobjects_.add(row);
@@ -172,29 +118,6 @@ class StoreV4 final : public Store {
       }
       columns.push_back({column, tree(feature, shape, owner, box)});
     }
-  }
-
-  static std::string_view free_column(const RawObject& object, const RawShape& shape,
-                                      const std::vector<Cell>& columns) {
-    using Names = std::array<std::string_view, 5>;
-    constexpr Names kFootprints{"lod0_footprint_id"}, kRoofprints{"lod0_roofprint_id"};
-    constexpr Names kSurfaces{"", "lod1_multi_surface_id", "lod2_multi_surface_id",
-                              "lod3_multi_surface_id", "lod4_multi_surface_id"};
-    constexpr Names kSolids{"", "lod1_solid_id", "lod2_solid_id", "lod3_solid_id", "lod4_solid_id"};
-    constexpr Names kBreps{"", "", "lod2_brep_id", "lod3_brep_id", "lod4_brep_id"};
-    const auto lod = static_cast<std::size_t>(shape.lod.major);
-    if (lod >= kSolids.size()) return {};
-    const bool solid = !shape.solids.empty();
-    const auto is_free = [&](std::string_view name) {
-      return std::none_of(columns.begin(), columns.end(),
-                          [&](const Cell& cell) { return cell.column == name; });
-    };
-    std::string_view name = (object.kind == ObjectKind::BuildingInstallation ? kBreps
-                             : lod == 0                                      ? kFootprints
-                             : solid                                         ? kSolids
-                                                                             : kSurfaces)[lod];
-    if (name == kFootprints[0] && !is_free(name)) name = kRoofprints[0];
-    return is_free(name) ? name : std::string_view{};
   }
 
   std::int64_t tree(const StoredFeature& feature, const RawShape& shape, std::int64_t owner,
@@ -278,14 +201,15 @@ class StoreV4 final : public Store {
     std::vector<std::vector<Cell>> columns(count);
     for (std::int64_t& id : ids) id = cityobject_++;
 
+    const auto is_storable = [&](std::size_t s) {
+      const Surface& surface = object.surfaces[s];
+      return class_v4(surface.type) != 0 && (!is_opening(surface.type) || surface.parent >= 0);
+    };
+
     for (const auto& geometry : feature.surface_geometries(index)) {
       const std::size_t s = geometry.surface;
-      const bool opening = is_opening(object.surfaces[s].type);
-      using Names = std::array<std::string_view, 5>;
-      constexpr Names kNames{"", "", "lod2_multi_surface_id", "lod3_multi_surface_id",
-                             "lod4_multi_surface_id"};
-      const auto lod = static_cast<std::size_t>(geometry.lod);
-      if (lod >= kNames.size() || kNames[lod].empty() || (opening && lod == 2)) {
+      const std::string_view column = surface_column(object.surfaces[s].type, geometry.lod);
+      if (!is_storable(s) || column.empty()) {
         ++report_.dropped_geometries;
         continue;
       }
@@ -293,14 +217,13 @@ class StoreV4 final : public Store {
       inner(root, 0, root, {}, ids[s]);
       for (const PolygonUse& use : geometry.uses)
         leaf(feature, use, root, root, ids[s], false, boxes[s]);
-      columns[s].push_back({kNames[lod], root});
+      columns[s].push_back({column, root});
     }
 
     for (std::size_t s = 0; s < count; ++s) {
       const Surface& surface = object.surfaces[s];
-      const int number = surface_class(surface.type);
-      const bool opening = is_opening(surface.type);
-      if (number == 0 || (opening && surface.parent < 0)) {
+      const int number = class_v4(surface.type);
+      if (!is_storable(s)) {
         ++report_.dropped_surfaces;
         continue;
       }
@@ -312,7 +235,7 @@ class StoreV4 final : public Store {
       cityobjects_.add(row);
       columns[s].push_back({"id", ids[s]});
       columns[s].push_back({"objectclass_id", std::int64_t{number}});
-      if (opening) {
+      if (is_opening(surface.type)) {
         openings_.add(columns[s]);
         fillings_.add({{"opening_id", ids[s]},
                        {"thematic_surface_id", ids[static_cast<std::size_t>(surface.parent)]}});
@@ -341,78 +264,6 @@ class StoreV4 final : public Store {
       add_generic(name, value, owner, sets);
     }
     if (!created) cityobject.push_back({"creation_date", options_.creation_date});
-  }
-
-  static bool add_to_cityobject(const std::string& name, const AttributeValue& value,
-                                std::vector<Cell>& row) {
-    if (name == "name") {
-      row.push_back({"name", joined_values(text_of(value))});
-    } else if (name == "description") {
-      row.push_back({"description", text_of(value)});
-    } else if (name == "relativeToTerrain") {
-      row.push_back({"relative_to_terrain", text_of(value)});
-    } else if (name == "relativeToWater") {
-      row.push_back({"relative_to_water", text_of(value)});
-    } else if (name == "creationDate" || name == "terminationDate") {
-      const auto date = timestamp_from(text_of(value));
-      if (date)
-        row.push_back({name == "creationDate" ? "creation_date" : "termination_date", *date});
-      return date.has_value();
-    } else {
-      return false;
-    }
-    return true;
-  }
-
-  static bool add_to_building(const std::string& name, const AttributeValue& value,
-                              bool installation, std::vector<Cell>& row) {
-    if (name == "class") {
-      row.push_back({"class", text_of(value)});
-      return true;
-    }
-    if (name == "function" || name == "usage") {
-      row.push_back({name == "usage" ? "usage" : "function", joined_values(text_of(value))});
-      return true;
-    }
-    if (installation) return false;
-    if (name == "yearOfConstruction" || name == "yearOfDemolition") {
-      const auto day = new_year_of(value);
-      if (day)
-        row.push_back(
-            {name == "yearOfConstruction" ? "year_of_construction" : "year_of_demolition", *day});
-      return day.has_value();
-    }
-    if (name == "roofType") {
-      row.push_back({"roof_type", text_of(value)});
-      return true;
-    }
-    if (name == "measuredHeight") {
-      const double* const height = std::get_if<double>(&value);
-      const std::int64_t* const whole = std::get_if<std::int64_t>(&value);
-      if (!height && !whole) return false;
-      row.push_back({"measured_height", height ? *height : static_cast<double>(*whole)});
-      row.push_back({"measured_height_unit", "m"});
-      return true;
-    }
-    if (name == "storeysAboveGround" || name == "storeysBelowGround") {
-      const std::int64_t* const count = std::get_if<std::int64_t>(&value);
-      if (count)
-        row.push_back(
-            {name == "storeysAboveGround" ? "storeys_above_ground" : "storeys_below_ground",
-             *count});
-      return count != nullptr;
-    }
-    if (name == "storeyHeightsAboveGround") {
-      row.push_back({"storey_heights_above_ground", text_of(value)});
-      row.push_back({"storey_heights_ag_unit", "m"});
-      return true;
-    }
-    if (name == "storeyHeightsBelowGround") {
-      row.push_back({"storey_heights_below_ground", text_of(value)});
-      row.push_back({"storey_heights_bg_unit", "m"});
-      return true;
-    }
-    return false;
   }
 
   void add_generic(const std::string& full_name, const AttributeValue& value, std::int64_t owner,

@@ -5,6 +5,7 @@
 
 #include "tests/support/citydb/copy_table.h"
 #include "tests/support/citydb/geometry_properties.h"
+#include "tests/support/citydb/names_v5.h"
 #include "tests/support/citydb/store.h"
 
 namespace citymesh::citydb_support {
@@ -13,140 +14,6 @@ namespace {
 using source::PolygonUse;
 using source::RawObject;
 using source::RawShape;
-
-enum Namespace : std::int64_t { kCore = 1, kGen = 3, kCon = 8, kBldg = 10, kDepr = 18 };
-enum DataType : std::int64_t {
-  kInteger = 3,
-  kDouble = 4,
-  kString = 5,
-  kTimestamp = 7,
-  kAddress = 8,
-  kFeature = 10,
-  kGeometry = 11,
-  kCode = 14,
-  kMeasure = 17,
-  kMeasureList = 18,
-  kStringOrRef = 22,
-  kGenericSet = 200,
-  kHeight = 702,
-};
-
-int object_class(ObjectKind kind) {
-  switch (kind) {
-    case ObjectKind::Building:
-      return 901;
-    case ObjectKind::BuildingPart:
-      return 902;
-    case ObjectKind::BuildingInstallation:
-      return 905;
-  }
-  return 0;
-}
-
-// 0: the version has no class for it.
-int surface_class(SurfaceType type) {
-  switch (type) {
-    case SurfaceType::ClosureSurface:
-      return 15;
-    case SurfaceType::WallSurface:
-      return 709;
-    case SurfaceType::GroundSurface:
-      return 710;
-    case SurfaceType::InteriorWallSurface:
-      return 711;
-    case SurfaceType::RoofSurface:
-      return 712;
-    case SurfaceType::FloorSurface:
-      return 713;
-    case SurfaceType::OuterFloorSurface:
-      return 714;
-    case SurfaceType::CeilingSurface:
-      return 715;
-    case SurfaceType::OuterCeilingSurface:
-      return 716;
-    case SurfaceType::Door:
-      return 718;
-    case SurfaceType::Window:
-      return 719;
-    case SurfaceType::Unknown:
-      break;
-  }
-  return 0;
-}
-
-struct PropertyName {
-  std::string_view name{};
-  Namespace space = kCore;
-};
-
-/// Attributes that are properties of the standard.
-struct KnownAttribute {
-  std::string_view name;
-  PropertyName property;
-  DataType type;
-};
-constexpr std::array kKnownAttributes{
-    KnownAttribute{"name", {"name", kCore}, kCode},
-    KnownAttribute{"description", {"description", kCore}, kStringOrRef},
-    KnownAttribute{"relativeToTerrain", {"relativeToTerrain", kCore}, kString},
-    KnownAttribute{"relativeToWater", {"relativeToWater", kCore}, kString},
-    KnownAttribute{"class", {"class", kBldg}, kCode},
-    KnownAttribute{"function", {"function", kBldg}, kCode},
-    KnownAttribute{"usage", {"usage", kBldg}, kCode},
-    KnownAttribute{"roofType", {"roofType", kBldg}, kCode},
-    KnownAttribute{"storeysAboveGround", {"storeysAboveGround", kBldg}, kInteger},
-    KnownAttribute{"storeysBelowGround", {"storeysBelowGround", kBldg}, kInteger},
-    KnownAttribute{"storeyHeightsAboveGround", {"storeyHeightsAboveGround", kBldg}, kMeasureList},
-    KnownAttribute{"storeyHeightsBelowGround", {"storeyHeightsBelowGround", kBldg}, kMeasureList},
-    KnownAttribute{"measuredHeight", {"height", kCon}, kHeight},
-    KnownAttribute{"yearOfConstruction", {"dateOfConstruction", kCon}, kTimestamp},
-    KnownAttribute{"yearOfDemolition", {"dateOfDemolition", kCon}, kTimestamp},
-    KnownAttribute{"dateOfConstruction", {"dateOfConstruction", kCon}, kTimestamp},
-    KnownAttribute{"dateOfDemolition", {"dateOfDemolition", kCon}, kTimestamp},
-    KnownAttribute{"conditionOfConstruction", {"conditionOfConstruction", kCon}, kString},
-    KnownAttribute{"relationToConstruction", {"relationToConstruction", kCon}, kString},
-};
-
-// Of a building, a part or an installation. No name: the version has none for it.
-PropertyName geometry_name(const RawObject& object, const RawShape& shape, bool citygml3) {
-  constexpr std::array<std::string_view, 5> kSolids{"", "lod1Solid", "lod2Solid", "lod3Solid",
-                                                    "lod4Solid"};
-  constexpr std::array<std::string_view, 5> kSurfaces{"lod0MultiSurface", "lod1MultiSurface",
-                                                      "lod2MultiSurface", "lod3MultiSurface",
-                                                      "lod4MultiSurface"};
-  constexpr std::array<std::string_view, 5> kOld{"", "", "lod2Geometry", "lod3Geometry",
-                                                 "lod4Geometry"};
-  const auto lod = static_cast<std::size_t>(shape.lod.major);
-  if (lod >= kSolids.size()) return {};
-  if (object.kind == ObjectKind::BuildingInstallation && !citygml3 && lod >= 2)
-    return {kOld[lod], kDepr};
-  if (!shape.solids.empty()) return {kSolids[lod], lod == 4 ? kDepr : kCore};
-  return {kSurfaces[lod], lod == 1 || lod == 4 ? kDepr : kCore};
-}
-
-PropertyName surface_geometry_name(int lod) {
-  constexpr std::array<std::string_view, 5> kNames{"lod0MultiSurface", "lod1MultiSurface",
-                                                   "lod2MultiSurface", "lod3MultiSurface",
-                                                   "lod4MultiSurface"};
-  if (lod < 0 || lod >= static_cast<int>(kNames.size())) return {};
-  return {kNames[static_cast<std::size_t>(lod)], lod == 4 ? kDepr : kCore};
-}
-
-// "2.5 3" as a JSON list; texts that are no numbers stay texts.
-std::string json_list(const std::string& text) {
-  std::string list, word;
-  for (const char c : text + " ") {
-    if (c != ' ' && c != '\n' && c != '\t') {
-      word += c;
-      continue;
-    }
-    if (word.empty()) continue;
-    const bool number = word.find_first_not_of("0123456789.-") == std::string::npos;
-    list += (list.empty() ? "" : ",") + (number ? word : "\"" + word + "\"");
-    word.clear();
-  }
-  return "[" + list + "]";
-}
 
 class StoreV5 final : public Store {
  public:
@@ -202,7 +69,7 @@ class StoreV5 final : public Store {
     }
     for (const Address& address : object.addresses) add_address(address, id);
     all.add(box);
-    add_feature(id, object_class(object.kind),
+    add_feature(id, class_v5(object.kind),
                 feature.id(object.gml_id, " object " + std::to_string(index)),
                 index == 0 ? all : box, created, terminated);
   }
@@ -346,9 +213,7 @@ class StoreV5 final : public Store {
     std::vector<std::int64_t> ids(count);
     std::vector<Box3> boxes(count);
     for (std::int64_t& id : ids) id = feature_++;
-    const auto is_storable = [&](std::size_t s) {
-      return surface_class(object.surfaces[s].type) != 0;
-    };
+    const auto is_storable = [&](std::size_t s) { return class_v5(object.surfaces[s].type) != 0; };
 
     for (const auto& geometry : feature.surface_geometries(index)) {
       const std::size_t s = geometry.surface;
@@ -370,7 +235,7 @@ class StoreV5 final : public Store {
       }
       all.add(boxes[s]);
       add_feature(
-          ids[s], surface_class(surface.type),
+          ids[s], class_v5(surface.type),
           feature.id(surface.gml_id, " surface " + std::to_string(index) + "." + std::to_string(s)),
           boxes[s], options_.creation_date, std::nullopt);
       if (surface.parent < 0)
@@ -395,10 +260,8 @@ class StoreV5 final : public Store {
           continue;
         }
       }
-      const auto known =
-          std::find_if(kKnownAttributes.begin(), kKnownAttributes.end(),
-                       [&](const KnownAttribute& attribute) { return attribute.name == name; });
-      if (known != kKnownAttributes.end() && add_known(*known, value, owner)) continue;
+      const KnownAttribute* const known = known_attribute(name);
+      if (known && add_known(*known, value, owner)) continue;
       add_generic(name, value, owner, sets);
     }
   }
