@@ -42,6 +42,9 @@ class Run {
     auto inputs = read_inputs(canonical);
     if (!inputs) return inputs.error();
     inputs_ = std::move(*inputs);
+    if (inputs_.only_estimate)
+      return fail(ErrorCode::InvalidArgument,
+                  "input `mode` is \"estimate\", which makes no files; expected \"run\"");
     if (inputs_.keep_installations) totals_.keep_installations();
     if (!exporting_) validation_.emplace(inputs_);
 

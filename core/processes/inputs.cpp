@@ -189,6 +189,7 @@ Result<std::string> complete_inputs(const ProcessSpec& process, std::string_view
 Result<Inputs> read_inputs(std::string_view canonical_json) {
   const json given = json::parse(canonical_json);
   Inputs inputs;
+  inputs.only_estimate = given.value("mode", "run") == "estimate";
   if (const auto bbox = given.find("bbox"); bbox != given.end() && !bbox->is_null()) {
     auto crs = parse_crs((*bbox)["crs"].get<std::string>());
     if (!crs) return crs.error();

@@ -13,6 +13,7 @@ namespace citymesh {
 
 /// The inputs of a process as values; fields are named like the inputs.
 struct Inputs {
+  bool only_estimate = false;
   BuildingQuery query{};
   std::vector<Lod> lod{};
   std::vector<std::string> formats{};

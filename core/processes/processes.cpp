@@ -13,6 +13,7 @@ constexpr std::array<std::string_view, 2> kInstallations{"drop", "keep"};
 constexpr std::array<std::string_view, 2> kOnFailure{"block", "drop"};
 constexpr std::array<std::string_view, 2> kPatches{"by_object", "by_type"};
 constexpr std::array<std::string_view, 2> kParts{"keep", "merge"};
+constexpr std::array<std::string_view, 2> kModes{"run", "estimate"};
 
 constexpr OptionSpec kBbox{
     "bbox", OptionKind::BoundingBox, "null",
@@ -101,8 +102,14 @@ constexpr OptionSpec kGap{"gap_threshold_m",
                           0.0,
                           10.0};
 
-constexpr std::array kValidateInputs{kBbox,      kBboxRule, kObjectIds, kCrs,       kSourceCrs,
-                                     kAxisOrder, kLod,      kSnap,      kPlanarity, kGap};
+constexpr OptionSpec kMode{
+    "mode", OptionKind::Text, "\"run\"",
+    "run, or estimate: how many buildings that is, how large the results will "
+    "be and what is wrong already, at once and without a job.",
+    kModes};
+
+constexpr std::array kValidateInputs{kBbox, kBboxRule, kObjectIds, kCrs, kSourceCrs, kAxisOrder,
+                                     kLod,  kSnap,     kPlanarity, kGap, kMode};
 
 constexpr OutputSpec kReportOutput{"report", "application/json",
                                    "What became of every building, defects and repairs included"};
@@ -126,11 +133,12 @@ struct Table {
                    kCrs,       kSourceCrs,    kAxisOrder,
                    kLod,       kInstallation, format("[\"cityjson\"]"),
                    kFailure,   kPart,         kSnap,
-                   kPlanarity, kDisplacement, kHole};
+                   kPlanarity, kDisplacement, kHole,
+                   kMode};
     export_inputs = {
         kBbox,  kBboxRule,     kObjectIds,          kCrs,          kSourceCrs, kAxisOrder,
         kLod,   kInstallation, format("[\"obj\"]"), kFailure,      kPart,      kUnite,
-        kPatch, kSnap,         kPlanarity,          kDisplacement, kHole};
+        kPatch, kSnap,         kPlanarity,          kDisplacement, kHole,      kMode};
     processes = {
         ProcessSpec{"export-for-simulation", "Export for simulation",
                     "Selects buildings by box or id, heals them, and delivers closed, 2-manifold "

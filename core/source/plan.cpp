@@ -41,6 +41,28 @@ bool overlap(const Box3& a, const Box3& b) {
   return a.min.x <= b.max.x && a.max.x >= b.min.x && a.min.y <= b.max.y && a.max.y >= b.min.y;
 }
 
+// Source text per triangle of the outer shells: the median of real files of LoD1 and LoD2. What
+// CityGML spells out with element names and a point per line, JSON says with an index.
+constexpr double kXmlBytesPerTriangle = 400, kOtherBytesPerTriangle = 60;
+constexpr double kPackedTimes = 10;  // as much text as bytes in a .gz
+
+/// Triangles that the selected buildings of a file will have, by the size of their text; none: that
+/// is not known.
+std::optional<double> expected_triangles(const Plan::File& file) {
+  const FileRecord& record = *file.record;
+  double bytes = 0;
+  for (const BuildingRecord& building : file.selected) {
+    if (building.bytes.known())
+      bytes += static_cast<double>(building.bytes.end - building.bytes.begin);
+    else if (record.stamp)
+      bytes += static_cast<double>(record.stamp->bytes) / static_cast<double>(record.buildings) *
+               (record.name.ends_with(".gz") ? kPackedTimes : 1);
+    else
+      return std::nullopt;
+  }
+  return bytes / (record.format == Format::CityGml ? kXmlBytesPerTriangle : kOtherBytesPerTriangle);
+}
+
 // Beyond any rounding of coordinates, in the unit of the file's axes.
 constexpr double kBoxMargin = 1e-6;
 
@@ -429,7 +451,10 @@ class Planner {
   void describe() {
     Selection& selection = plan_.selection;
     std::set<std::string> unstated, assumed, used;
+    std::optional<double> triangles = 0.0;
     for (const Plan::File& file : plan_.files) {
+      const auto of_file = expected_triangles(file);
+      triangles = triangles && of_file ? std::optional(*triangles + *of_file) : std::nullopt;
       const FileRecord& record = *file.record;
       InputReport report{.file = record.name,
                          .format = record.facts.format,
@@ -468,6 +493,7 @@ class Planner {
                                     building.part_ids.end());
       }
     }
+    if (triangles) selection.expected_triangles = static_cast<std::uint64_t>(std::ceil(*triangles));
     selection.source_crs.assign(used.begin(), used.end());
     selection.warnings.insert(selection.warnings.end(), passed_over_.begin(), passed_over_.end());
     if (!unstated.empty())

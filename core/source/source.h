@@ -47,7 +47,10 @@ struct Selection {
   /// buildings contradict, counts with the extent of all its buildings, those further than 200 km
   /// from their median left out. Points beyond 214 km of it are issue C105.
   Point3 origin{};
-  std::uint64_t buildings = 0;        ///< top-level buildings that `read` will deliver
+  std::uint64_t buildings = 0;  ///< top-level buildings that `read` will deliver
+  /// Of their outer shells, by how much the source keeps of them; right within a factor of three
+  /// for most. None: the source cannot tell without reading.
+  std::optional<std::uint64_t> expected_triangles{};
   std::vector<InputReport> inputs{};  ///< one per file or store, in reading order
   std::vector<std::string> warnings{};
   std::vector<std::string> missing_ids{};  ///< of `object_ids`, those no source has

@@ -21,9 +21,10 @@ struct Format {
   std::string_view key;        ///< `obj`
   std::string_view file_name;  ///< `model.obj`
   std::string_view media_type;
-  std::string_view sidecar;  ///< `model_binary.patches.json` or ""
-  std::string_view title;    ///< what it is, for people
-  bool gml_ids = false;      ///< bodies go by their gml_id, not by Body::name
+  std::string_view sidecar;       ///< `model_binary.patches.json` or ""
+  std::string_view title;         ///< what it is, for people
+  bool gml_ids = false;           ///< bodies go by their gml_id, not by Body::name
+  double bytes_per_triangle = 0;  ///< of a finished file with its sidecar: what cities take
 };
 
 std::span<const Format> formats();

@@ -44,6 +44,14 @@ void add_format(CLI::App& command, RunArguments& arguments) {
       ->type_name("FORMAT");
 }
 
+void add_output(CLI::App& command, RunArguments& arguments) {
+  command
+      .add_option("--output", arguments.output,
+                  "folder for the results; created if needed. Not needed with `--set "
+                  "mode=estimate`, which prints what would be processed")
+      ->type_name("DIR");
+}
+
 void add_run(CLI::App& program, RunArguments& arguments, int& code) {
   auto& command = *program.add_subcommand("run", "runs a process on files, without a service");
   command.add_option("process", arguments.process, "one of: " + process_ids())
@@ -54,9 +62,7 @@ void add_run(CLI::App& program, RunArguments& arguments, int& code) {
                   "CityGML or CityJSON files (also .gz), or folders of them")
       ->required()
       ->type_name("FILE");
-  command.add_option("--output", arguments.output, "folder for the results; created if needed")
-      ->required()
-      ->type_name("DIR");
+  add_output(command, arguments);
   add_format(command, arguments);
   add_selection(command, arguments);
   command.callback([&] { code = run_command(arguments); });
@@ -84,9 +90,7 @@ void add_heal(CLI::App& program, RunArguments& arguments, int& code) {
   command.add_option("file", arguments.files, "CityGML or CityJSON files (also .gz), or folders")
       ->required()
       ->type_name("FILE");
-  command.add_option("--output", arguments.output, "folder for the results; created if needed")
-      ->required()
-      ->type_name("DIR");
+  add_output(command, arguments);
   add_format(command, arguments);
   add_selection(command, arguments);
   command.callback([&] {

@@ -10,7 +10,9 @@
 #include <system_error>
 #include <thread>
 
+#include "core/pipeline/estimate.h"
 #include "core/pipeline/pipeline.h"
+#include "core/processes/inputs.h"
 #include "core/processes/processes.h"
 #include "core/source/source.h"
 #include "services/apps/commands.h"
@@ -83,20 +85,35 @@ int exit_code(const RunOutcome& outcome) {
   return outcome.complete && !defects ? kDone : kDoneWithLosses;
 }
 
-Result<RunOutcome> run_files(const RunArguments& arguments, const std::string& inputs,
-                             const std::filesystem::path& folder, const StopOnSignal& stop) {
-  auto source = open_input(arguments.files);
-  if (!source) return source.error();
-  ProgressBar bar(stderr);
+RunContext context_of(const RunArguments& arguments, const StopOnSignal& stop) {
   RunContext context;
   context.stop = stop.token();
-  context.on_progress = [&bar](const Progress& progress) { bar.show(progress); };
   context.now_s = [] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
         .count();
   };
   context.threads =
       arguments.threads > 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
+  return context;
+}
+
+int print_estimate(const RunArguments& arguments, const std::string& inputs) {
+  const StopOnSignal stop;
+  const auto source = open_input(arguments.files);
+  if (!source) return could_not_run(source.error());
+  const auto expected = estimate(arguments.process, inputs, **source, context_of(arguments, stop));
+  if (!expected) return could_not_run(expected.error());
+  fmt::print("{}\n", to_json(*expected));
+  return expected->problems.empty() ? kDone : kDoneWithLosses;
+}
+
+Result<RunOutcome> run_files(const RunArguments& arguments, const std::string& inputs,
+                             const std::filesystem::path& folder, const StopOnSignal& stop) {
+  auto source = open_input(arguments.files);
+  if (!source) return source.error();
+  ProgressBar bar(stderr);
+  auto context = context_of(arguments, stop);
+  context.on_progress = [&bar](const Progress& progress) { bar.show(progress); };
   return run(arguments.process, inputs, **source, folder, context);
 }
 
@@ -115,8 +132,15 @@ int run_to_folder(const RunArguments& arguments) {
           fail(ErrorCode::NotFound, fmt::format("input '{}' does not exist", file.string())));
   }
 
-  const StopOnSignal stop;
+  const auto read = read_inputs(*inputs);
+  if (!read) return could_not_run(read.error());
+  if (read->only_estimate) return print_estimate(arguments, *inputs);
   const auto to_stdout = arguments.output.empty();
+  if (to_stdout && arguments.process != kValidate)
+    return could_not_run(
+        fail(ErrorCode::InvalidArgument, "--output is missing, expected a folder for the results"));
+
+  const StopOnSignal stop;
   auto output = to_stdout ? OutputFolder::temporary()
                           : OutputFolder::open(arguments.output, arguments.overwrite);
   if (!output) return could_not_run(output.error());

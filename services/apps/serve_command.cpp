@@ -12,6 +12,8 @@
 #include <thread>
 
 #include "core/base/version.h"
+#include "core/processes/inputs.h"
+#include "core/processes/processes.h"
 #include "core/source/source.h"
 #include "services/access/access.h"
 #include "services/apps/commands.h"
@@ -31,6 +33,7 @@
 #include "services/stores/state_folder.h"
 #include "services/telemetry/log.h"
 #include "services/telemetry/metrics.h"
+#include "services/worker/estimates.h"
 #include "services/worker/limited_source.h"
 #include "services/worker/worker.h"
 
@@ -100,13 +103,21 @@ Result<SenderOptions> sender_options(const ServeOptions& options) {
   return sender;
 }
 
-RpcOptions rpc_options(const ServeOptions& options, const Access& access, Log& log) {
+std::string rest_url(const ServeOptions& options, std::uint16_t port) {
+  if (!options.public_url.empty()) return options.public_url;
+  return (options.tls_certificate.empty() ? "http://" : "https://") +
+         to_string(Endpoint{options.listen.host, port});
+}
+
+RpcOptions rpc_options(const ServeOptions& options, std::string links_base, const Access& access,
+                       Log& log) {
   return {.host = options.grpc.host,
           .port = options.grpc.port,
           .max_message_bytes = static_cast<int>(options.max_body_bytes),
           .max_watches = options.max_watches,
           .tls_certificate = options.tls_certificate,
           .tls_key = options.tls_key,
+          .links_base = std::move(links_base),
           .access = &access,
           .log = &log};
 }
@@ -179,13 +190,21 @@ void announce(Log& log, const ServeOptions& options, const Endpoint& rest, const
 
 /// No job takes more than it may.
 SourceFactory within_limits(SourceFactory open, const ServeOptions& options) {
-  const JobLimits limits{.area_km2 = options.max_job_area_km2,
-                         .buildings = options.max_job_buildings,
-                         .points = options.max_job_points};
+  const JobLimits limits{.buildings = options.max_job_buildings, .points = options.max_job_points};
   return [open = std::move(open), limits]() -> Result<std::unique_ptr<CitySource>> {
     auto source = open();
     if (!source) return source.error();
     return limited(*std::move(source), limits);
+  };
+}
+
+/// No box is larger than it may be.
+std::function<Result<void>(const std::string&, const std::string&)> area_check(double max_km2) {
+  if (max_km2 <= 0) return {};
+  return [max_km2](const std::string& process, const std::string& inputs_json) -> Result<void> {
+    if (find_process(process) == nullptr) return {};  // reads no buildings
+    const auto inputs = read_inputs(inputs_json);
+    return inputs ? check_area(inputs->query, max_km2) : inputs.error();
   };
 }
 
@@ -250,6 +269,8 @@ Result<void> serve(const ServeOptions& options) {
       **store, **store, **results,
       {.max_open_jobs = options.max_open_jobs,
        .max_open_jobs_per_owner = options.max_client_jobs,
+       .check_inputs = area_check(options.max_job_area_km2),
+       .estimate = estimator(*source),
        .check_callback = [allow_private = options.allow_private_callbacks](const std::string& uri) {
          return check_callback_uri(uri, allow_private);
        }});
@@ -257,10 +278,9 @@ Result<void> serve(const ServeOptions& options) {
   WorkerPool workers(**store, **store, **results, *source, log, metrics,
                      worker_options(options, **access));
   RestServer rest(jobs, metrics, rest_options(options, **access, log));
-  RpcServer rpc(jobs, metrics, rpc_options(options, **access, log));
-
   const auto rest_port = rest.start();
   if (!rest_port) return rest_port.error();
+  RpcServer rpc(jobs, metrics, rpc_options(options, rest_url(options, *rest_port), **access, log));
   const auto rpc_port = rpc.start();
   if (!rpc_port) return rpc_port.error();
   workers.start();

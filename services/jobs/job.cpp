@@ -1,7 +1,9 @@
 #include "services/jobs/job.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdlib>
@@ -30,6 +32,17 @@ std::optional<JobState> job_state_from(std::string_view name) {
   for (const auto& [state, known] : kStates)
     if (known == name) return state;
   return std::nullopt;
+}
+
+Result<void> check_idempotency_key(std::string_view key) {
+  constexpr std::size_t kLongest = 255;
+  const bool plain = std::ranges::all_of(
+      key, [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; });
+  if (!key.empty() && key.size() <= kLongest && plain) return {};
+  return fail(ErrorCode::InvalidArgument,
+              fmt::format("the idempotency key is '{}', expected 1 to {} printable ASCII "
+                          "characters without quotes and backslashes, for instance a UUID",
+                          key.substr(0, kLongest), kLongest));
 }
 
 TimeMs now_ms() {

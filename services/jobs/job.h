@@ -24,6 +24,9 @@ inline bool is_final(JobState state) {
 using TimeMs = std::int64_t;
 TimeMs now_ms();
 
+/// Whether a client's key for repeating a request can be kept. Errors: InvalidArgument.
+Result<void> check_idempotency_key(std::string_view key);
+
 /// A random UUID (version 4) from the kernel's generator.
 std::string new_job_id();
 

@@ -19,6 +19,8 @@ using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 
 constexpr const char* kFormats = "formats";
+constexpr const char* kMode = "mode";
+constexpr const char* kEstimate = "estimate";
 
 template <class Specs>
 std::string ids(const Specs& specs) {
@@ -73,8 +75,8 @@ JobManager::JobManager(JobStore& jobs, TaskQueue& queue, ResultStore& results,
   });
 }
 
-Result<Job> JobManager::submit(JobSpec spec, std::string idempotency_key, std::string owner,
-                               std::string trace_id) {
+/// The same with checked and completed inputs.
+Result<JobSpec> JobManager::checked(JobSpec spec) const {
   const auto* process = find_offered(spec.process);
   if (process == nullptr)
     return fail(ErrorCode::NotFound, fmt::format("process '{}' does not exist; available: {}",
@@ -85,11 +87,42 @@ Result<Job> JobManager::submit(JobSpec spec, std::string idempotency_key, std::s
   if (inputs && !spec.outputs.empty())  // what is parsed here has passed the limits already
     inputs = checked_inputs(spec.process, with_requested_formats(*process, spec));
   if (!inputs) return inputs.error();
+  if (options_.check_inputs)
+    if (auto allowed = options_.check_inputs(spec.process, *inputs); !allowed)
+      return allowed.error();
   spec.inputs_json = *std::move(inputs);
+  return spec;
+}
+
+bool JobManager::asks_for_estimate(const JobSpec& spec) {
+  const auto inputs = json::parse(spec.inputs_json, nullptr, false);
+  return inputs.is_object() && inputs.contains(kMode) && inputs[kMode] == kEstimate &&
+         find_process(spec.process) != nullptr;
+}
+
+Result<Estimate> JobManager::estimate(JobSpec spec) {
+  if (find_offered(spec.process) != nullptr && find_process(spec.process) == nullptr)
+    return fail(
+        ErrorCode::Unimplemented,
+        fmt::format("process '{}' reads no buildings: there is nothing to estimate", spec.process));
+  auto asked = checked(std::move(spec));
+  if (!asked) return asked.error();
+  if (!options_.estimate)
+    return fail(ErrorCode::Unimplemented, "this service does not estimate; submit a job instead");
+  return options_.estimate(asked->process, asked->inputs_json);
+}
+
+Result<Job> JobManager::submit(JobSpec spec, std::string idempotency_key, std::string owner,
+                               std::string trace_id) {
+  auto asked = checked(std::move(spec));
+  if (!asked) return asked.error();
+  if (asks_for_estimate(*asked))
+    return fail(ErrorCode::InvalidArgument,
+                "input `mode` is \"estimate\", which makes no job; expected \"run\"");
 
   Job job;
   job.id = new_job_id();
-  job.spec = std::move(spec);
+  job.spec = *std::move(asked);
   job.message = "queued";
   job.created = job.updated = now_ms();
   job.idempotency_key = std::move(idempotency_key);

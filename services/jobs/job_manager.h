@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/pipeline/estimate.h"
 #include "services/jobs/job.h"
 #include "services/jobs/stores.h"
 
@@ -19,6 +20,12 @@ struct JobManagerOptions {
   std::uint32_t max_open_jobs = 1000;
   /// The same for each owner; jobs of nobody in particular do not count. 0: no limit of its own.
   std::uint32_t max_open_jobs_per_owner = 0;
+  /// What checked inputs may not ask of this service, whatever the process allows; empty: nothing.
+  std::function<Result<void>(const std::string& process, const std::string& inputs_json)>
+      check_inputs{};
+  /// What checked inputs would process; empty: this service does not estimate.
+  std::function<Result<Estimate>(const std::string& process, const std::string& inputs_json)>
+      estimate{};
   /// Whether a subscriber's URI may be called; empty: this service calls nobody.
   std::function<Result<void>(const std::string& uri)> check_callback{};
   /// How long `dismiss` waits for a running job to stop before it answers.
@@ -43,6 +50,11 @@ class JobManager {
   /// is free again once the job is forgotten.
   Result<Job> submit(JobSpec spec, std::string idempotency_key = {}, std::string owner = {},
                      std::string trace_id = {});
+  /// What a job of this kind would process, without making one: the input `mode` may say so or not.
+  /// Errors: those of submit() for process and inputs, those of the source, Unimplemented.
+  Result<Estimate> estimate(JobSpec spec);
+  /// Whether `mode` asks for an estimate rather than a job.
+  static bool asks_for_estimate(const JobSpec& spec);
   Result<Job> get(const std::string& id);
   Result<std::vector<Job>> list(const JobFilter& filter);
   Result<std::uint64_t> count(const JobFilter& filter);
@@ -76,6 +88,7 @@ class JobManager {
   Result<Job> wait_until(const std::string& id, TimeMs wait_ms,
                          const std::function<bool(const Job&)>& enough);
   Result<Job> repeated(const Job& job);
+  Result<JobSpec> checked(JobSpec spec) const;
   Result<void> check_subscriber(const Subscriber& subscriber) const;
   Result<void> take_room_for(const Job& job);
   void leave_room_of(const Job& job);

@@ -55,19 +55,13 @@ bool is_json(std::string_view content_type) {
 /// (draft-ietf-httpapi-idempotency-key-header): a quoted text; quotes may be left out. Empty: none.
 Result<std::string> idempotency_key(const Headers& headers) {
   constexpr std::string_view kName = "Idempotency-Key";
-  constexpr std::size_t kLongest = 255;
   if (!headers.has(kName)) return std::string{};
   const auto header = headers.get(kName);
   std::string_view key = header;
   if (key.size() > 1 && key.starts_with('"') && key.ends_with('"'))
     key = key.substr(1, key.size() - 2);
-  const bool plain = std::ranges::all_of(
-      key, [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; });
-  if (key.empty() || key.size() > kLongest || !plain)
-    return fail(ErrorCode::InvalidArgument,
-                fmt::format("Idempotency-Key is '{}', expected 1 to {} printable ASCII characters "
-                            "without quotes and backslashes, for instance a UUID",
-                            header, kLongest));
+  if (auto checked = check_idempotency_key(key); !checked)
+    return fail(checked.error().code, fmt::format("{}: {}", kName, checked.error().message));
   return std::string(key);
 }
 
@@ -79,6 +73,14 @@ Response accepted(std::string_view base, const Job& job, const std::string& pref
 }
 
 }  // namespace
+
+Response Api::estimate(const Call& call, JobSpec spec) const {
+  const auto expected = jobs_.estimate(std::move(spec));
+  if (!expected)
+    return problem_response(problem_kind(expected.error().code), expected.error().message,
+                            call.accept);
+  return json_response(to_json(*expected));
+}
 
 Response Api::execute(const Call& call) const {
   const auto* process = find_offered(call.values[0]);
@@ -93,6 +95,7 @@ Response Api::execute(const Call& call) const {
   auto spec = decode_execute(*process, call.request.body);
   if (!spec)
     return problem_response(problem_kind(spec.error().code), spec.error().message, call.accept);
+  if (JobManager::asks_for_estimate(*spec)) return estimate(call, *std::move(spec));
   spec->subscriber.base = call.base;
   const auto key = idempotency_key(call.request.headers);
   if (!key)

@@ -154,6 +154,18 @@ Json schemas() {
        {{"type", "object"},
         {"description", "Output id to value, qualified value or link."},
         {"additionalProperties", true}}},
+      {"estimate",
+       object(
+           {{"process", text()},
+            {"buildings", whole_number(0)},
+            {"expected",
+             object({{"triangles", whole_number(0)},
+                     {"bytes", whole_number(0)},
+                     {"outputs", {{"type", "object"}, {"additionalProperties", whole_number(0)}}}},
+                    {"triangles", "bytes", "outputs"})},
+            {"crs", text()},
+            {"problems", list_of(text())}},
+           {"process", "buildings", "expected", "crs", "problems"})},
       {"problem", object({{"type", text()},
                           {"title", text()},
                           {"status", {{"type", "integer"}}},
@@ -233,6 +245,15 @@ Json execution_path(const ProcessSpec& process) {
     }
     created["description"] =
         "The job is accepted or not yet done; `Location` is its address, and it goes on.";
+  }
+  if (find_process(process.id) != nullptr) {
+    auto& answer = answers["200"];
+    auto& schema = answer["content"]["application/json"]["schema"];
+    schema = schema.is_null() ? schema_ref("estimate")
+                              : Json{{"anyOf", Json::array({schema_ref("estimate"), schema})}};
+    answer["description"] = answer.value("description", "") +
+                            (answer.contains("description") ? "; with `mode` " : "With `mode` ") +
+                            "`estimate`: what would be processed. No job is made.";
   }
   answers["201"] = std::move(created);
   const auto* prefer =

@@ -54,11 +54,29 @@ v1::Job to_proto(const Job& job) {
   return message;
 }
 
+v1::EstimateReply to_proto(const Estimate& estimate) {
+  v1::EstimateReply message;
+  message.set_buildings(estimate.buildings);
+  message.set_expected_triangles(estimate.triangles);
+  message.set_expected_bytes(estimate.bytes);
+  for (const auto& expected : estimate.outputs) {
+    auto& output = *message.add_outputs();
+    output.set_output(expected.output);
+    output.set_bytes(expected.bytes);
+  }
+  message.set_crs(estimate.crs);
+  for (const auto& problem : estimate.problems) message.add_problems(problem);
+  return message;
+}
+
 JobSpec to_spec(const v1::SubmitRequest& request) {
   JobSpec spec;
   spec.process = request.process();
   spec.inputs_json = request.inputs_json();
   for (const auto& output : request.outputs()) spec.outputs[output] = Transmission::Value;
+  spec.subscriber.success_uri = request.subscriber().success_uri();
+  spec.subscriber.in_progress_uri = request.subscriber().in_progress_uri();
+  spec.subscriber.failed_uri = request.subscriber().failed_uri();
   return spec;
 }
 

@@ -22,6 +22,7 @@
 #include "services/jobs/job_manager.h"
 #include "services/offer/offer.h"
 #include "services/rpc/caller.h"
+#include "services/rpc/error_details.h"
 #include "services/rpc/messages.h"
 #include "services/telemetry/log.h"
 #include "services/telemetry/metrics.h"
@@ -89,7 +90,15 @@ grpc::StatusCode to_grpc(ErrorCode code) {
   return grpc::StatusCode::INTERNAL;
 }
 
-grpc::Status to_status(const Error& error) { return {to_grpc(error.code), error.message}; }
+grpc::Status status_of(grpc::StatusCode code, std::string_view reason, const std::string& message) {
+  const bool passes_by_itself =
+      code == grpc::StatusCode::RESOURCE_EXHAUSTED || code == grpc::StatusCode::UNAVAILABLE;
+  return {code, message, error_details(code, reason, message, passes_by_itself)};
+}
+
+grpc::Status to_status(const Error& error) {
+  return status_of(to_grpc(error.code), to_string(error.code), error.message);
+}
 
 using Metadata = std::multimap<grpc::string_ref, grpc::string_ref>;
 
@@ -112,6 +121,7 @@ class JobsService final : public v1::Jobs::Service {
         metrics_(metrics),
         access_(options.access != nullptr ? *options.access : Access::for_everybody()),
         log_(options.log),
+        links_base_(options.links_base),
         max_watches_(options.max_watches) {}
 
   void stop() { stopping_ = true; }
@@ -119,13 +129,29 @@ class JobsService final : public v1::Jobs::Service {
   grpc::Status Submit(grpc::ServerContext* context, const v1::SubmitRequest* request,
                       v1::Job* answer) override {
     return served(*context, "Submit", Role::Submit, [&](const Caller& caller) {
-      const auto job = jobs_.submit(to_spec(*request), {}, caller.name, caller.trace_id);
+      const auto& key = request->idempotency_key();
+      if (!key.empty())
+        if (const auto checked = check_idempotency_key(key); !checked)
+          return to_status(checked.error());
+      auto spec = to_spec(*request);
+      spec.subscriber.base = links_base_;
+      const auto job = jobs_.submit(std::move(spec), key, caller.name, caller.trace_id);
       if (job && log_ != nullptr)
         log_->info("job_accepted", {{"job_id", job->id},
                                     {"process", job->spec.process},
                                     {"owner", job->owner},
                                     {"trace_id", caller.trace_id}});
       return reply(job, answer);
+    });
+  }
+
+  grpc::Status Estimate(grpc::ServerContext* context, const v1::SubmitRequest* request,
+                        v1::EstimateReply* answer) override {
+    return served(*context, "Estimate", Role::Submit, [&](const Caller&) {
+      const auto expected = jobs_.estimate(to_spec(*request));
+      if (!expected) return to_status(expected.error());
+      *answer = to_proto(*expected);
+      return grpc::Status::OK;
     });
   }
 
@@ -185,17 +211,17 @@ class JobsService final : public v1::Jobs::Service {
         if (needed == Role::None) return call(caller);
         const auto client =
             access_.identify(credentials_of(context.peer(), metadata, access_.trusted_proxies()));
-        if (!client) return {grpc::StatusCode::UNAUTHENTICATED, client.error().message};
+        if (!client) return unauthenticated(client.error().message);
         if (client->name.empty() && client->role == Role::None)
-          return {grpc::StatusCode::UNAUTHENTICATED,
-                  "this needs an API key or a token, expected metadata `authorization: Bearer …` "
-                  "or (API key) `x-api-key: …`"};
+          return unauthenticated(
+              "this needs an API key or a token, expected metadata `authorization: Bearer …` or "
+              "(API key) `x-api-key: …`");
         if (const auto allowed = require(*client, needed); !allowed)
           return to_status(allowed.error());
         static_cast<Client&>(caller) = *client;
         return call(caller);
       } catch (const std::exception& error) {
-        return {grpc::StatusCode::INTERNAL, error.what()};
+        return to_status(fail(ErrorCode::Internal, error.what()));
       }
     }();
     const auto code = code_name(status.error_code());
@@ -207,6 +233,13 @@ class JobsService final : public v1::Jobs::Service {
                            {"seconds", seconds},
                            {"trace_id", caller.trace_id}});
     return status;
+  }
+
+  static grpc::Status unauthenticated(const std::string& why) {
+    return status_of(grpc::StatusCode::UNAUTHENTICATED, "Unauthenticated", why);
+  }
+  static grpc::Status shutting_down() {
+    return to_status(fail(ErrorCode::Unavailable, "the server is shutting down"));
   }
 
   /// A job that the client may not see does not exist for it.
@@ -245,9 +278,10 @@ class JobsService final : public v1::Jobs::Service {
       std::uint32_t place;
     } const slot(watches_);
     if (slot.place > max_watches_)
-      return {grpc::StatusCode::RESOURCE_EXHAUSTED,
-              fmt::format("{} watches are open and at most {} may be; use Get or try again later",
-                          max_watches_, max_watches_)};
+      return to_status(
+          fail(ErrorCode::ResourceExhausted,
+               fmt::format("{} watches are open and at most {} may be; use Get or try again later",
+                           max_watches_, max_watches_)));
 
     auto job = job_of(client, id);
     if (!job) return to_status(job.error());
@@ -255,7 +289,7 @@ class JobsService final : public v1::Jobs::Service {
     auto seen = job->updated;
     while (!is_final(job->state)) {
       if (context.IsCancelled()) return grpc::Status::CANCELLED;
-      if (stopping_) return {grpc::StatusCode::UNAVAILABLE, "the server is shutting down"};
+      if (stopping_) return shutting_down();
       job = jobs_.wait_for_change(id, seen, kWatchWaitMs);
       if (!job) return to_status(job.error());
       if (job->updated == seen) continue;
@@ -277,17 +311,17 @@ class JobsService final : public v1::Jobs::Service {
       std::string available;
       for (const auto& candidate : *files)
         available += (available.empty() ? "" : ", ") + candidate.file_name;
-      return {grpc::StatusCode::NOT_FOUND,
-              fmt::format("job {} has no result '{}'; available: {}", request.job_id(),
-                          request.output(), available)};
+      return to_status(
+          fail(ErrorCode::NotFound, fmt::format("job {} has no result '{}'; available: {}",
+                                                request.job_id(), request.output(), available)));
     }
     if (request.offset() > file->bytes)
-      return {grpc::StatusCode::OUT_OF_RANGE,
-              fmt::format("offset is {}, expected at most {}, the size of {}", request.offset(),
-                          file->bytes, file->file_name)};
+      return status_of(grpc::StatusCode::OUT_OF_RANGE, "OutOfRange",
+                       fmt::format("offset is {}, expected at most {}, the size of {}",
+                                   request.offset(), file->bytes, file->file_name));
     for (std::uint64_t offset = request.offset();;) {
       if (context.IsCancelled()) return grpc::Status::CANCELLED;
-      if (stopping_) return {grpc::StatusCode::UNAVAILABLE, "the server is shutting down"};
+      if (stopping_) return shutting_down();
       auto bytes = jobs_.read_result(request.job_id(), file->file_name, offset, kChunkBytes);
       if (!bytes) return to_status(bytes.error());
       if (bytes->empty()) return grpc::Status::OK;
@@ -302,6 +336,7 @@ class JobsService final : public v1::Jobs::Service {
   Metrics& metrics_;
   const Access& access_;
   Log* const log_;
+  const std::string links_base_;
   const std::uint32_t max_watches_;
   std::atomic<std::uint32_t> watches_ = 0;
   std::atomic<bool> stopping_ = false;

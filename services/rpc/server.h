@@ -21,6 +21,7 @@ struct RpcOptions {
   std::uint32_t max_watches = 256;  ///< Watch streams at the same time; more: RESOURCE_EXHAUSTED
   std::filesystem::path tls_certificate{};  ///< PEM, read again when it changes; empty: no TLS
   std::filesystem::path tls_key{};
+  std::string links_base{};  ///< of REST: what subscribers are told has links that begin with it
   const Access* access = nullptr;  ///< who may do what, outlives the server; null: everybody all
   Log* log = nullptr;              ///< outlives the server; null: nothing is logged
 };

@@ -38,11 +38,6 @@ class LimitedSource final : public CitySource {
       : source_(std::move(source)), limits_(limits) {}
 
   Result<Selection> select(const BuildingQuery& query, const RunContext& context) override {
-    if (limits_.area_km2 > 0 && query.bbox)
-      if (const auto area = area_km2(*query.bbox); area && *area > limits_.area_km2)
-        return fail(ErrorCode::ResourceExhausted,
-                    fmt::format("`bbox` covers {:.4g} km², at most {:.4g} km² may be in one job",
-                                *area, limits_.area_km2));
     auto selection = source_->select(query, context);
     if (selection && limits_.buildings > 0 && selection->buildings > limits_.buildings)
       return fail(ErrorCode::ResourceExhausted,
@@ -76,6 +71,15 @@ class LimitedSource final : public CitySource {
 };
 
 }  // namespace
+
+Result<void> check_area(const BuildingQuery& query, double max_km2) {
+  if (!query.bbox) return {};
+  if (const auto area = area_km2(*query.bbox); area && *area > max_km2)
+    return fail(ErrorCode::InvalidArgument,
+                fmt::format("input `bbox` covers {:.4g} km², at most {:.4g} km² may be in one job",
+                            *area, max_km2));
+  return {};
+}
 
 std::unique_ptr<CitySource> limited(std::unique_ptr<CitySource> source, const JobLimits& limits) {
   return std::make_unique<LimitedSource>(std::move(source), limits);

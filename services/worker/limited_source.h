@@ -9,13 +9,16 @@ namespace citymesh {
 
 /// How much one job may take from a source. 0: no limit.
 struct JobLimits {
-  double area_km2 = 0;  ///< of the box asked for
   std::uint64_t buildings = 0;
   std::uint64_t points = 0;  ///< of all buildings read, parts and installations included
 };
 
 /// The source within limits: a selection or a reading that exceeds one ends with ResourceExhausted,
 /// which names the limit and how much it was.
+/// Whether the box of a query is small enough: known before a source is asked. Errors:
+/// InvalidArgument, with the area of the box.
+Result<void> check_area(const BuildingQuery& query, double max_km2);
+
 std::unique_ptr<CitySource> limited(std::unique_ptr<CitySource> source, const JobLimits& limits);
 
 }  // namespace citymesh

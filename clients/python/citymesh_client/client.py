@@ -72,6 +72,11 @@ class Client:
         document = self._transport.json("POST", f"/processes/{quote(process, safe='')}/execution", body, headers)
         return Job(self._transport, str(document["jobID"]))
 
+    def estimate(self, process: str, inputs: Mapping[str, Any]) -> Dict[str, Any]:
+        """What a job would process: `buildings`, `expected` triangles and bytes, `problems`. Makes none."""
+        body = {"inputs": {**inputs, "mode": "estimate"}}
+        return cast(Dict[str, Any], self._transport.json("POST", f"/processes/{quote(process, safe='')}/execution", body))
+
     def job(self, job_id: str) -> Job:
         """A job from before. Whether it exists is seen when it is asked for something."""
         return Job(self._transport, job_id)

@@ -41,6 +41,13 @@ class PythonClient(ServiceTest):
                          {"export-for-simulation", "heal", "validate"})
         self.assertIn("bbox", self.client.process("heal")["inputs"])
 
+    def test_estimate_makes_no_job(self):
+        before = len(list(self.client.jobs()))
+        expected = self.client.estimate("heal", {"bbox": {"bbox": BOX}, "formats": ["cityjson"]})
+        self.assertGreater(expected["buildings"], 0)
+        self.assertIn("cityjson", expected["expected"]["outputs"])
+        self.assertEqual(len(list(self.client.jobs())), before)
+
     def test_export_is_one_line(self):
         files = self.client.export(BOX, to=self.folder / "new" / "folder", formats=["obj", "stl"], snap_tolerance_m=0.002)
         self.assertLessEqual({"model.obj", "model.stl", "report.json", "report.html", "picture.svg", "run.json"}, files.keys())

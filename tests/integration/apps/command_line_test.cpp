@@ -63,6 +63,22 @@ TEST(CommandLine, ListsProcessesWithTheirInputs) {
                                  HasSubstr("snap_tolerance_m = 0.001")));
 }
 
+TEST(CommandLine, AnEstimateSaysWhatWouldBeProcessedAndWritesNothing) {
+  const auto outcome = citymesh({"run", "export-for-simulation", "--input", kTile, "--format",
+                                 "obj,ply", "--set", "mode=estimate"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const auto expected = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(expected["buildings"], 6);
+  EXPECT_TRUE(expected["expected"]["outputs"].contains("ply"));
+  const auto missing =
+      citymesh({"heal", kTile, "--set", "mode=estimate", "--set", "object_ids=nobody"});
+  EXPECT_EQ(missing.code, 1);
+  EXPECT_THAT(missing.out, HasSubstr("`nobody` is in none of the inputs"));
+  const auto nowhere = citymesh({"heal", kTile});
+  EXPECT_EQ(nowhere.code, 2);
+  EXPECT_THAT(nowhere.err, HasSubstr("--output is missing"));
+}
+
 TEST(CommandLine, PrintsTheDescriptionOfTheRestApi) {
   const auto outcome = citymesh({"openapi", "--server", "https://maps.example/citymesh"});
   EXPECT_EQ(outcome.code, 0);

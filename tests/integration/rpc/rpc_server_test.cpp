@@ -5,6 +5,7 @@
 #include <fstream>
 #include <thread>
 
+#include "citymesh/v1/error_details.pb.h"
 #include "citymesh/v1/jobs.grpc.pb.h"
 #include "services/jobs/job_manager.h"
 #include "services/jobs/retention.h"
@@ -28,8 +29,22 @@ class RpcServerTest : public testing::Test {
   RpcServerTest()
       : store_(*EmbeddedStore::open(folder_ / "jobs.sqlite")),
         results_(*FolderResultStore::open(folder_ / "results")),
-        jobs_(*store_, *store_, *results_, {.max_open_jobs = 10, .dismiss_wait_ms = 50}),
-        server_(jobs_, metrics_, {.port = 0, .max_message_bytes = 64 << 10, .max_watches = 2}) {
+        jobs_(*store_, *store_, *results_,
+              {.max_open_jobs = 10,
+               .estimate =
+                   [](const std::string& process, const std::string&) {
+                     Estimate expected{.process = process, .buildings = 12, .triangles = 480};
+                     expected.outputs = {{"obj", 16'800}};
+                     expected.problems = {"a.gml cannot be read"};
+                     return Result<Estimate>(expected);
+                   },
+               .check_callback = [](const std::string&) { return Result<void>{}; },
+               .dismiss_wait_ms = 50}),
+        server_(jobs_, metrics_,
+                {.port = 0,
+                 .max_message_bytes = 64 << 10,
+                 .max_watches = 2,
+                 .links_base = "https://citymesh.test"}) {
     const auto port = server_.start();
     EXPECT_TRUE(port) << port.error().message;
     channel_ = grpc::CreateChannel("127.0.0.1:" + std::to_string(port ? *port : 0),
@@ -128,6 +143,80 @@ TEST_F(RpcServerTest, HealIsTakenWithItsLimits) {
             grpc::StatusCode::INVALID_ARGUMENT);
   EXPECT_EQ(submit("heal", R"({"max_hole_area_m2":-1})").first.error_code(),
             grpc::StatusCode::INVALID_ARGUMENT);
+}
+
+TEST_F(RpcServerTest, AnEstimateMakesNoJob) {
+  v1::SubmitRequest request;
+  request.set_process("export-for-simulation");
+  grpc::ClientContext context;
+  v1::EstimateReply expected;
+  const auto status = stub_->Estimate(&context, request, &expected);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(expected.buildings(), 12u);
+  EXPECT_EQ(expected.expected_triangles(), 480u);
+  ASSERT_EQ(expected.outputs_size(), 1);
+  EXPECT_EQ(expected.outputs(0).output(), "obj");
+  EXPECT_EQ(expected.outputs(0).bytes(), 16'800u);
+  EXPECT_EQ(expected.problems(0), "a.gml cannot be read");
+  EXPECT_EQ(*jobs_.count({}), 0u);
+}
+
+TEST_F(RpcServerTest, ARepeatedRequestWithItsKeyGetsTheSameJob) {
+  const auto keyed = [this](const std::string& key, const std::string& inputs) {
+    v1::SubmitRequest request;
+    request.set_process("validate");
+    request.set_inputs_json(inputs);
+    request.set_idempotency_key(key);
+    grpc::ClientContext context;
+    v1::Job job;
+    auto status = stub_->Submit(&context, request, &job);
+    return std::pair(status, job.job_id());
+  };
+  const auto first = keyed("a-key", "{}");
+  ASSERT_TRUE(first.first.ok()) << first.first.error_message();
+  EXPECT_EQ(keyed("a-key", "{}").second, first.second);
+  EXPECT_NE(keyed("another", "{}").second, first.second);
+  EXPECT_EQ(keyed("a-key", R"({"lod":["1"]})").first.error_code(),
+            grpc::StatusCode::ALREADY_EXISTS);
+  EXPECT_EQ(keyed("a\nkey", "{}").first.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+}
+
+TEST_F(RpcServerTest, ASubscriberIsKeptWithTheAddressOfTheLinks) {
+  v1::SubmitRequest request;
+  request.set_process("validate");
+  request.mutable_subscriber()->set_success_uri("https://client.test/done");
+  grpc::ClientContext context;
+  v1::Job job;
+  ASSERT_TRUE(stub_->Submit(&context, request, &job).ok());
+  const auto kept = jobs_.get(job.job_id());
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->spec.subscriber.success_uri, "https://client.test/done");
+  EXPECT_EQ(kept->spec.subscriber.base, "https://citymesh.test");
+}
+
+TEST_F(RpcServerTest, ErrorsSayTheirReasonAndWhenToTryAgain) {
+  const auto details = [](const grpc::Status& status) {
+    v1::Status said;
+    EXPECT_TRUE(said.ParseFromString(status.error_details()));
+    EXPECT_EQ(said.code(), status.error_code());
+    EXPECT_EQ(said.message(), status.error_message());
+    v1::ErrorInfo info;
+    EXPECT_EQ(said.details(0).type_url(), "type.googleapis.com/google.rpc.ErrorInfo");
+    EXPECT_TRUE(info.ParseFromString(said.details(0).value()));
+    EXPECT_EQ(info.domain(), "citymesh");
+    return std::pair(info.reason(), said);
+  };
+  const auto [reason, unknown] = details(submit("fly", "{}").first);
+  EXPECT_EQ(reason, to_string(ErrorCode::NotFound));
+  EXPECT_EQ(unknown.details_size(), 1);
+  for (int i = 0; i < 10; ++i) submitted();
+  const auto [full, again] = details(submit("validate", "{}").first);
+  EXPECT_EQ(full, to_string(ErrorCode::ResourceExhausted));
+  ASSERT_EQ(again.details_size(), 2);
+  v1::RetryInfo retry;
+  EXPECT_EQ(again.details(1).type_url(), "type.googleapis.com/google.rpc.RetryInfo");
+  EXPECT_TRUE(retry.ParseFromString(again.details(1).value()));
+  EXPECT_GT(retry.retry_delay().seconds(), 0);
 }
 
 TEST_F(RpcServerTest, ErrorsKeepTheirCodeAndMessage) {

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "citymesh/v1/error_details.pb.h"
 #include "citymesh/v1/jobs.pb.h"
 
 namespace citymesh {
@@ -44,7 +45,8 @@ std::set<std::string> wire_of(const FileDescriptor& file) {
 }
 
 TEST(Wire, WhatClientsOfAnyAgeRelyOnNeverChanges) {
-  const auto present = wire_of(*v1::Job::descriptor()->file());
+  auto present = wire_of(*v1::Job::descriptor()->file());
+  present.merge(wire_of(*v1::Status::descriptor()->file()));
   std::set<std::string> stored;
   std::ifstream file(std::string(CITYMESH_TEST_DATA) + "/wire/jobs.txt");
   ASSERT_TRUE(file);

@@ -54,6 +54,44 @@ class JobManagerTest : public testing::Test {
   JobManager jobs_{*store_, *store_, *results_, {.max_open_jobs = 3, .dismiss_wait_ms = 50}};
 };
 
+TEST_F(JobManagerTest, WhatTheServiceDoesNotTakeIsRefusedBeforeThereIsAJob) {
+  JobManager jobs(
+      *store_, *store_, *results_,
+      {.check_inputs = [](const std::string& process, const std::string& inputs) -> Result<void> {
+        EXPECT_EQ(process, "validate");
+        EXPECT_THAT(inputs, HasSubstr("bbox_rule")) << "inputs are completed";
+        return fail(ErrorCode::InvalidArgument, "the box is too large");
+      }});
+  const auto refused = jobs.submit({.process = "validate"});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, "the box is too large");
+  EXPECT_EQ(*jobs.count({}), 0u);
+}
+
+TEST_F(JobManagerTest, AnEstimateMakesNoJob) {
+  JobManager jobs(*store_, *store_, *results_,
+                  {.estimate = [](const std::string& process, const std::string&) {
+                    Estimate expected;
+                    expected.process = process;
+                    expected.buildings = 12;
+                    return Result<Estimate>(expected);
+                  }});
+  for (const auto* inputs : {R"({"mode":"estimate"})", "{}"}) {
+    const auto expected = jobs.estimate({.process = "heal", .inputs_json = inputs});
+    ASSERT_TRUE(expected) << expected.error().message;
+    EXPECT_EQ(expected->buildings, 12u);
+  }
+  const auto job = jobs.submit({.process = "heal", .inputs_json = R"({"mode":"estimate"})"});
+  ASSERT_FALSE(job);
+  EXPECT_EQ(job.error().code, ErrorCode::InvalidArgument);
+  EXPECT_EQ(jobs.estimate({.process = "heal", .inputs_json = R"({"mode":7})"}).error().code,
+            ErrorCode::InvalidArgument);
+  EXPECT_EQ(jobs.estimate({.process = "fly"}).error().code, ErrorCode::NotFound);
+  EXPECT_EQ(jobs.estimate({.process = "echo"}).error().code, ErrorCode::Unimplemented);
+  EXPECT_EQ(jobs_.estimate({.process = "heal"}).error().code, ErrorCode::Unimplemented);
+  EXPECT_EQ(*jobs.count({}), 0u);
+}
+
 TEST(JobId, IsARandomUuidOfVersionFour) {
   std::set<std::string> ids;
   for (int i = 0; i < 1000; ++i) {

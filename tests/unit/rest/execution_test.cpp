@@ -56,6 +56,20 @@ TEST_F(RestExecution, AsyncOnlyProcessIsAJobWithAndWithoutPreference) {
   }
 }
 
+TEST_F(RestExecution, AnEstimateIsAnsweredAtOnceAndMakesNoJob) {
+  for (const auto* target : {kExecution, kHeal, kValidate})
+    for (const auto* prefer : {"", "respond-async"}) {
+      const auto response = execute(target, prefer, R"({"inputs":{"mode":"estimate"}})");
+      EXPECT_EQ(response.status, 200);
+      EXPECT_FALSE(response.follow);
+      EXPECT_FALSE(response.headers.has("Location"));
+      EXPECT_EQ(document(response)["buildings"], 12);
+      EXPECT_EQ(document(response)["expected"]["outputs"]["report"], 14'000);
+    }
+  EXPECT_EQ(execute(kHeal, "", R"({"inputs":{"mode":"guess"}})").status, 400);
+  EXPECT_TRUE(must(service_.jobs().list({})).empty());
+}
+
 TEST_F(RestExecution, PreferRespondAsyncMakesAJobOfAnyProcess) {
   for (const auto* target : {kValidate, kHeal}) {
     const auto response = execute(target, "respond-async");

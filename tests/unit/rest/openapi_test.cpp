@@ -45,10 +45,25 @@ class OpenApi : public RestApi {
   static void check_schema(const std::string& place, const json& schema) {
     static const std::set<std::string> kTypes = {"object", "array",   "string",
                                                  "number", "integer", "boolean"};
-    static const std::set<std::string> kKeywords = {
-        "$ref",     "type",     "format", "title",   "description", "properties",
-        "required", "items",    "enum",   "default", "minimum",     "maximum",
-        "minItems", "maxItems", "oneOf",  "allOf",   "example",     "additionalProperties"};
+    static const std::set<std::string> kKeywords = {"$ref",
+                                                    "type",
+                                                    "format",
+                                                    "title",
+                                                    "description",
+                                                    "properties",
+                                                    "required",
+                                                    "items",
+                                                    "enum",
+                                                    "default",
+                                                    "minimum",
+                                                    "maximum",
+                                                    "minItems",
+                                                    "maxItems",
+                                                    "oneOf",
+                                                    "anyOf",
+                                                    "allOf",
+                                                    "example",
+                                                    "additionalProperties"};
     ASSERT_TRUE(schema.is_object()) << place;
     for (const auto& [keyword, value] : schema.items())
       EXPECT_TRUE(kKeywords.contains(keyword)) << place << " has " << keyword;
@@ -72,7 +87,7 @@ class OpenApi : public RestApi {
     if (fallback != schema.end() && schema.contains("maximum")) {
       EXPECT_LE(fallback->get<double>(), schema["maximum"].get<double>()) << place;
     }
-    for (const auto* list : {"oneOf", "allOf"})
+    for (const auto* list : {"oneOf", "anyOf", "allOf"})
       for (const auto& part : schema.value(list, json::array()))
         check_schema(place + "/" + list, part);
     if (schema.contains("items")) check_schema(place + "/items", schema["items"]);
@@ -215,7 +230,13 @@ TEST_F(OpenApi, ProcessesAreDescribedWithTheirOwnWaysOfExecution) {
   for (const auto& process : offered_processes()) {
     const auto id = std::string(process.id);
     const auto& post = definition_["paths"]["/processes/" + id + "/execution"]["post"];
-    EXPECT_EQ(post["responses"].contains("200"), !process.async_only) << id;
+    // Without a job: results that were waited for, and estimates.
+    const bool estimates = find_process(process.id) != nullptr;
+    EXPECT_EQ(post["responses"].contains("200"), !process.async_only || estimates) << id;
+    EXPECT_EQ(post["responses"].contains("204"), !process.async_only) << id;
+    EXPECT_EQ(post["responses"]["200"].dump().find("schemas/estimate") != std::string::npos,
+              estimates)
+        << id;
     EXPECT_TRUE(post["responses"]["201"]["headers"].contains("Location")) << id;
     const auto& inputs =
         definition_["components"]["schemas"]["execute-" + id]["properties"]["inputs"]["properties"];
