@@ -113,15 +113,15 @@ TEST_F(Loaders, Version4HasTreesOfPolygonsWithCopiesOfSharedOnes) {
           " ST_AsText(geometry), ST_SRID(geometry) FROM surface_geometry s"
           " JOIN building b ON b.lod2_solid_id = s.root_id"
           " JOIN cityobject o ON o.id = s.cityobject_id WHERE geometry IS NOT NULL ORDER BY s.id"),
+      "p_own|b|1|0|0|0|0|POLYGON Z ((300000 5800000 0,300010 5800010 10,300010 5800000 0,"
+      "300000 5800000 0))|25833\n"
+      "made|b|1|0|0|0|0|POLYGON Z ((300000 5800000 0,300000 5800010 0,300010 5800010 10,"
+      "300000 5800000 0))|25833\n"
       "p_wall|b|1|0|0|2|0|POLYGON Z ((300000 5800000 0,300010 5800000 0,300010 5800000 8,"
       "300000 5800000 8,300000 5800000 0),(300002 5800000 2,300002 5800000 4,300004 5800000 4,"
       "300004 5800000 2,300002 5800000 2))|25833\n"
       "p_roof|b|1|0|0|2|1|POLYGON Z ((300000 5800000 8,300010 5800010 10,300010 5800000 8,"
-      "300000 5800000 8))|25833\n"
-      "p_own|b|1|0|0|0|0|POLYGON Z ((300000 5800000 0,300010 5800010 10,300010 5800000 0,"
-      "300000 5800000 0))|25833\n"
-      "made|b|1|0|0|0|0|POLYGON Z ((300000 5800000 0,300000 5800010 0,300010 5800010 10,"
-      "300000 5800000 0))|25833\n");
+      "300000 5800000 8))|25833\n");
   EXPECT_EQ(lines(url,
                   "SELECT o.objectclass_id, o.gmlid LIKE 'ID_%', b.gmlid,"
                   " t.lod2_multi_surface_id IS NOT NULL, t.lod3_multi_surface_id IS NOT NULL"

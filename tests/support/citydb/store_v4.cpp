@@ -41,6 +41,7 @@ class StoreV4 final : public Store {
     Box3 all;
     for (std::size_t i = ids.size(); i-- > 1;) add_object(feature, i, ids, all);
     add_object(feature, 0, ids, all);
+    add_copies();
   }
 
   std::size_t bytes() const override {
@@ -174,20 +175,35 @@ class StoreV4 final : public Store {
             std::int64_t root, std::int64_t owner, bool refers, Box3& box) {
     const auto rings = feature.rings(use, box);
     if (!rings) return;
-    constexpr const char *kNone = "0", *kGlobal = "1", *kLocal = "2";
-    surfaces_.add({{"id", surface_++},
-                   {"gmlid", feature.polygon_id(use.polygon)},
-                   {"parent_id", parent},
-                   {"root_id", root},
-                   {"is_solid", "0"},
-                   {"is_composite", "0"},
-                   {"is_triangulated", "0"},
-                   {"is_xlink", feature.is_borrowed(use.polygon)           ? kGlobal
-                                : refers && feature.is_shared(use.polygon) ? kLocal
-                                                                           : kNone},
-                   {"is_reverse", use.reversed ? "1" : "0"},
-                   {"geometry", Ewkb(options_.schema.srid).polygon(*rings).take()},
-                   {"cityobject_id", owner}});
+    const bool global = feature.is_borrowed(use.polygon);
+    const bool local = !global && refers && feature.is_shared(use.polygon);
+    std::vector<Cell> row{{"gmlid", feature.polygon_id(use.polygon)},
+                          {"parent_id", parent},
+                          {"root_id", root},
+                          {"is_solid", "0"},
+                          {"is_composite", "0"},
+                          {"is_triangulated", "0"},
+                          {"is_xlink", global  ? "1"
+                                       : local ? "2"
+                                               : "0"},
+                          {"is_reverse", use.reversed ? "1" : "0"},
+                          {"geometry", Ewkb(options_.schema.srid).polygon(*rings).take()},
+                          {"cityobject_id", owner}};
+    if (global || local) {
+      copies_.push_back(std::move(row));
+      return;
+    }
+    row.push_back({"id", surface_++});
+    surfaces_.add(row);
+  }
+
+  // The importer follows references when everything else is stored.
+  void add_copies() {
+    for (std::vector<Cell>& row : copies_) {
+      row.push_back({"id", surface_++});
+      surfaces_.add(row);
+    }
+    copies_.clear();
   }
 
   // ---- boundary surfaces -------------------------------------------------------------------
@@ -201,9 +217,11 @@ class StoreV4 final : public Store {
     std::vector<std::vector<Cell>> columns(count);
     for (std::int64_t& id : ids) id = cityobject_++;
 
+    const auto has_class = [&](std::size_t s) { return class_v4(object.surfaces[s].type) != 0; };
     const auto is_storable = [&](std::size_t s) {
       const Surface& surface = object.surfaces[s];
-      return class_v4(surface.type) != 0 && (!is_opening(surface.type) || surface.parent >= 0);
+      if (!is_opening(surface.type)) return has_class(s);
+      return surface.parent >= 0 && has_class(static_cast<std::size_t>(surface.parent));
     };
 
     for (const auto& geometry : feature.surface_geometries(index)) {
@@ -328,6 +346,7 @@ class StoreV4 final : public Store {
   const LoadOptions& options_;
   LoadReport& report_;
   std::int64_t cityobject_ = 1, surface_ = 1, generic_ = 1, address_ = 1;  ///< next ids
+  std::vector<std::vector<Cell>> copies_{};  ///< of shared polygons, still without ids
   CopyTable cityobjects_{in_schema("cityobject"),
                          {"id", "objectclass_id", "gmlid", "name", "description", "envelope",
                           "creation_date", "termination_date", "relative_to_terrain",

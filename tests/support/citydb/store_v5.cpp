@@ -213,7 +213,11 @@ class StoreV5 final : public Store {
     std::vector<std::int64_t> ids(count);
     std::vector<Box3> boxes(count);
     for (std::int64_t& id : ids) id = feature_++;
-    const auto is_storable = [&](std::size_t s) { return class_v5(object.surfaces[s].type) != 0; };
+    const auto has_class = [&](std::size_t s) { return class_v5(object.surfaces[s].type) != 0; };
+    const auto is_storable = [&](std::size_t s) {
+      const std::int32_t outer = object.surfaces[s].parent;
+      return has_class(s) && (outer < 0 || has_class(static_cast<std::size_t>(outer)));
+    };
 
     for (const auto& geometry : feature.surface_geometries(index)) {
       const std::size_t s = geometry.surface;
