@@ -46,7 +46,10 @@ struct GeometryTree::Walk {
   std::uint64_t points = 0;              ///< used so far, references counted each time
   bool too_large = false;
   std::unordered_map<std::uint32_t, std::uint32_t> borrowed{};  ///< shared polygon -> own copy
-  std::vector<Place> path{};                                    ///< the references that are open
+  /// Surfaces of polygons that boundary surfaces of several objects have, of all but the first
+  /// object: a wall between house and garage.
+  std::map<std::pair<std::int32_t, std::uint32_t>, std::int32_t> further_surfaces{};
+  std::vector<Place> path{};  ///< the references that are open
 
   void report(int code, std::string where) const {
     if (issues && issues->size() < kMaxIssues) issues->push_back({code, std::move(where)});
@@ -282,7 +285,11 @@ void GeometryTree::add_boundary(const Root& root, Walk& walk, Assembly& assembly
   for (PolygonUse& use : uses) {
     RawPolygon& polygon = walk.feature.polygons[use.polygon];
     use.surface = root.surface;
-    if (polygon.surface >= 0) continue;
+    if (polygon.surface >= 0) {
+      if (polygon.object != root.object)
+        walk.further_surfaces.emplace(std::pair(root.object, use.polygon), root.surface);
+      continue;
+    }
     polygon.object = root.object;
     polygon.surface = root.surface;
   }
@@ -361,6 +368,10 @@ void GeometryTree::resolve(Feature& feature, const DocumentOptions& options, Doc
     walk.issues = &object.issues;
     RawShape shape{.lod = root.lod, .footprint = root.footprint, .closed_rings = true};
     shape_of(root, walk, shape);
+    for (PolygonUse& use : shape.uses)
+      if (const auto further = walk.further_surfaces.find({root.object, use.polygon});
+          further != walk.further_surfaces.end())
+        use.surface = further->second;
     if (!shape.uses.empty()) object.shapes.push_back(std::move(shape));
   }
   for (auto& [key, uses] : assembly.uses) {

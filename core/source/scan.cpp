@@ -108,7 +108,7 @@ Result<void> read_through(FileScan& scan, DocumentOptions options, bool with_foo
                          if (!scan.records.empty() && building.bytes.known() &&
                              building.bytes == scan.records.back().bytes)
                            building.nth_of_piece = scan.records.back().nth_of_piece + 1;
-                         if (with_footprints) FootprintFinder(feature).add_to(building.footprint);
+                         if (with_footprints) building.footprint = footprints_of(feature);
                          scan.records.push_back(std::move(building));
                          return {};
                        });
@@ -185,6 +185,12 @@ void sum_up(FileScan& scan) {
 }
 
 }  // namespace
+
+Footprints footprints_of(const Feature& feature) {
+  Footprints footprints;
+  FootprintFinder(feature).add_to(footprints);
+  return footprints;
+}
 
 FileRecord plain_file(const std::filesystem::path& path) {
   return {.path = path, .name = path.filename().string(), .text = path};

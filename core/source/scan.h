@@ -18,6 +18,10 @@ struct FileScan : FileRecord {
 Result<FileScan> scan_file(FileRecord file, const ReadLimits& limits, bool with_footprints,
                            const std::stop_token& stop);
 
+/// The polygons that a building and its parts are drawn with on a map: ground surfaces, else
+/// footprints, else everything.
+Footprints footprints_of(const Feature& feature);
+
 /// A file that is its own text.
 FileRecord plain_file(const std::filesystem::path& path);
 

@@ -12,17 +12,13 @@
 #include <thread>
 
 #include "core/base/version.h"
-#include "core/processes/inputs.h"
-#include "core/processes/processes.h"
-#include "core/source/source.h"
 #include "services/access/access.h"
 #include "services/apps/commands.h"
+#include "services/apps/serve_data.h"
 #include "services/apps/signals.h"
 #include "services/callbacks/address_guard.h"
 #include "services/callbacks/sender.h"
 #include "services/callbacks/signature.h"
-#include "services/catalogue/catalogue.h"
-#include "services/catalogue/data_version.h"
 #include "services/jobs/job_manager.h"
 #include "services/jobs/retention.h"
 #include "services/rest/results.h"
@@ -34,7 +30,6 @@
 #include "services/telemetry/log.h"
 #include "services/telemetry/metrics.h"
 #include "services/worker/estimates.h"
-#include "services/worker/limited_source.h"
 #include "services/worker/worker.h"
 
 namespace citymesh {
@@ -49,7 +44,8 @@ LogLevel log_level(std::string_view name) {
 
 TimeMs milliseconds(double seconds) { return static_cast<TimeMs>(std::llround(seconds * 1000)); }
 
-WorkerOptions worker_options(const ServeOptions& options, const Access& access) {
+WorkerOptions worker_options(const ServeOptions& options, const ServedData& data,
+                             const Access& access) {
   const auto threads =
       options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   WorkerOptions worker{.workers = options.workers,
@@ -57,8 +53,7 @@ WorkerOptions worker_options(const ServeOptions& options, const Access& access) 
                        .lease_ms = milliseconds(options.lease_s),
                        .job_timeout_ms = milliseconds(options.job_timeout_s),
                        .max_job_bytes = options.max_job_bytes};
-  if (options.result_cache == "on")
-    worker.source_version = [data = options.data] { return data_version(data); };
+  if (options.result_cache == "on") worker.source_version = data.version;
   // Where clients are told apart, none may learn what another has asked for.
   worker.share_results = !access.is_required();
   return worker;
@@ -166,13 +161,14 @@ std::jthread start_sweeping(EmbeddedStore& store, ResultStore& results, const Se
   });
 }
 
-void announce(Log& log, const ServeOptions& options, const Endpoint& rest, const Endpoint& rpc) {
+void announce(Log& log, const ServeOptions& options, const std::string& data, const Endpoint& rest,
+              const Endpoint& rpc) {
   const bool tls = !options.tls_certificate.empty();
   const auto url = (tls ? "https://" : "http://") + to_string(rest);
   log.info("listening", {{"rest", url},
                          {"grpc", to_string(rpc)},
                          {"public_url", options.public_url},
-                         {"data", options.data.string()},
+                         {"data", data},
                          {"state", options.state.string()},
                          {"workers", options.workers},
                          {"version", version()}});
@@ -184,55 +180,8 @@ void announce(Log& log, const ServeOptions& options, const Endpoint& rest, const
            {"message", options.insecure
                            ? "anyone who reaches this address may submit and read jobs"
                            : "without TLS here or in a proxy keys travel for all to read"}});
-  fmt::print(stderr, "citymesh {} serves {}\n  REST  {}/\n  gRPC  {}\n", version(),
-             options.data.string(), url, to_string(rpc));
-}
-
-/// No job takes more than it may.
-SourceFactory within_limits(SourceFactory open, const ServeOptions& options) {
-  const JobLimits limits{.buildings = options.max_job_buildings, .points = options.max_job_points};
-  return [open = std::move(open), limits]() -> Result<std::unique_ptr<CitySource>> {
-    auto source = open();
-    if (!source) return source.error();
-    return limited(*std::move(source), limits);
-  };
-}
-
-/// No box is larger than it may be.
-std::function<Result<void>(const std::string&, const std::string&)> area_check(double max_km2) {
-  if (max_km2 <= 0) return {};
-  return [max_km2](const std::string& process, const std::string& inputs_json) -> Result<void> {
-    if (find_process(process) == nullptr) return {};  // reads no buildings
-    const auto inputs = read_inputs(inputs_json);
-    return inputs ? check_area(inputs->query, max_km2) : inputs.error();
-  };
-}
-
-/// What jobs read: a folder through its catalogue, which is brought up to date now rather than in
-/// the first job; a single file as it is.
-Result<SourceFactory> open_data(const ServeOptions& options, Log& log, const StopOnSignal& stop) {
-  std::error_code ignored;
-  if (!std::filesystem::is_directory(options.data, ignored)) {
-    SourceFactory file = [data = options.data] { return open_files({data}, {}); };
-    if (auto opened = file(); !opened) return opened.error();
-    return within_limits(std::move(file), options);
-  }
-  CatalogueOptions catalogue{.data = options.data, .state = default_catalogue(options.data)};
-  if (!has_catalogue(catalogue.state)) catalogue.state = options.state / "catalogue";
-  RunContext context;
-  context.stop = stop.token();
-  context.threads =
-      options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
-  log.info("indexing", {{"data", options.data.string()}, {"catalogue", catalogue.state.string()}});
-  const auto report = update_catalogue(catalogue, context);
-  if (!report) return report.error();
-  for (const auto& [file, problem] : report->problems)
-    log.warning("file_not_read", {{"file", file}, {"message", problem}});
-  log.info("indexed", {{"files", report->files},
-                       {"buildings", report->buildings},
-                       {"new_or_changed", report->indexed},
-                       {"removed", report->removed}});
-  return within_limits([catalogue] { return open_catalogued(catalogue); }, options);
+  fmt::print(stderr, "citymesh {} serves {}\n  REST  {}/\n  gRPC  {}\n", version(), data, url,
+             to_string(rpc));
 }
 
 Result<void> serve(const ServeOptions& options) {
@@ -243,8 +192,8 @@ Result<void> serve(const ServeOptions& options) {
   if (!access) return access.error();
   auto state = StateFolder::open(options.state);
   if (!state) return state.error();
-  const auto source = open_data(options, log, stop);
-  if (!source) return source.error();
+  const auto data = open_served_data(options, log, stop.token());
+  if (!data) return data.error();
   auto store = EmbeddedStore::open(state->jobs_file(), {.max_attempts = options.max_attempts});
   if (!store) return store.error();
   auto results = FolderResultStore::open(state->results_folder());
@@ -269,14 +218,14 @@ Result<void> serve(const ServeOptions& options) {
       **store, **store, **results,
       {.max_open_jobs = options.max_open_jobs,
        .max_open_jobs_per_owner = options.max_client_jobs,
-       .check_inputs = area_check(options.max_job_area_km2),
-       .estimate = estimator(*source),
+       .check_inputs = data->check_inputs,
+       .estimate = estimator(data->open),
        .check_callback = [allow_private = options.allow_private_callbacks](const std::string& uri) {
          return check_callback_uri(uri, allow_private);
        }});
   CallbackSender callbacks(**store, callback_json, log, metrics, *std::move(sending));
-  WorkerPool workers(**store, **store, **results, *source, log, metrics,
-                     worker_options(options, **access));
+  WorkerPool workers(**store, **store, **results, data->open, log, metrics,
+                     worker_options(options, *data, **access));
   RestServer rest(jobs, metrics, rest_options(options, **access, log));
   const auto rest_port = rest.start();
   if (!rest_port) return rest_port.error();
@@ -287,7 +236,8 @@ Result<void> serve(const ServeOptions& options) {
   callbacks.start();
   const auto sweeper = start_sweeping(**store, **results, options, log);
   const auto reader = start_reading_access(**access, rest, log);
-  announce(log, options, {options.listen.host, *rest_port}, {options.grpc.host, *rpc_port});
+  announce(log, options, data->name, {options.listen.host, *rest_port},
+           {options.grpc.host, *rpc_port});
 
   stop.wait();
   log.info("stopping", {});

@@ -65,8 +65,7 @@ void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> r
       "serve", "the job service: REST, gRPC and workers in one process, until Ctrl-C");
   command.fallthrough();  // to --config
   command.allow_config_extras(CLI::config_extras_mode::error);
-  command.add_option("--data", options.data, "folder of CityGML and CityJSON files to serve")
-      ->required()
+  command.add_option("--data", options.data, "folder of CityGML and CityJSON files that jobs read")
       ->type_name("DIR");
   command.add_option("--state", options.state, "folder for jobs and results")
       ->type_name("DIR")
@@ -80,6 +79,15 @@ void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> r
   const auto add = [&command](const char* name, auto& value, const char* what) {
     return command.add_option(name, value, what)->capture_default_str();
   };
+  add("--source", options.source,
+      "3DCityDB that jobs read instead: postgresql://user@host:port/database; the password best in "
+      "PGPASSWORD or a PGPASSFILE")
+      ->type_name("URL");
+  add("--source_schema", options.source_schema, "schema of that database");
+  add("--source_connections", options.source_connections,
+      "to that database, at the same time; who needs one more waits");
+  add("--source_timeout_s", options.source_timeout_s,
+      "of one statement of that database; 0: no limit");
   add("--api_keys", options.api_keys,
       "file of the API keys that are accepted, by lines of `citymesh make-key`")
       ->type_name("FILE");
@@ -162,7 +170,7 @@ void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> r
     if (!*print_config) return run();
     if (const auto checked = check(options); !checked)
       throw CLI::ValidationError("serve", checked.error().message);
-    std::cout << "[serve]\n" << command.config_to_str(true, false) << '\n';
+    std::cout << "[serve]\n" << without_passwords(command.config_to_str(true, false)) << '\n';
   });
 }
 

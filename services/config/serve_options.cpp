@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <regex>
 #include <system_error>
 #include <utility>
 
@@ -122,12 +123,31 @@ bool is_loopback(const Endpoint& endpoint) {
   return endpoint.host.starts_with("127.") || endpoint.host == "::1";
 }
 
+std::string without_passwords(const std::string& text) {
+  static const std::regex kUrl(R"((://[^:/@\s"]*):[^/\s"]*@)"), kWord(R"((password=)[^&\s"]*)");
+  return std::regex_replace(std::regex_replace(text, kUrl, "$1:***@"), kWord, "$1***");
+}
+
 Result<void> check(const ServeOptions& options) {
-  if (options.data.empty())
+  if (options.data.empty() == options.source.empty())
     return fail(ErrorCode::InvalidArgument,
-                "--data is missing; expected a folder of CityGML or CityJSON files");
+                options.data.empty()
+                    ? "--data is missing; expected a folder of CityGML or CityJSON files, or "
+                      "--source with the URL of a 3DCityDB"
+                    : "--data and --source are both given; expected one of them");
   std::error_code error;
-  if (!std::filesystem::exists(options.data, error))
+  if (!options.source.empty() && !options.source.starts_with("postgresql://") &&
+      !options.source.starts_with("postgres://"))
+    return wrong("--source", fmt::format("'{}'", without_passwords(options.source)),
+                 "postgresql://user@host:port/database");
+  if (options.source_schema.empty())
+    return wrong("--source_schema", "empty", "the schema of the 3DCityDB, for example citydb");
+  if (options.source_connections < 1 || options.source_connections > kMostThreads)
+    return wrong("--source_connections", options.source_connections,
+                 fmt::format("1 to {}", kMostThreads));
+  if (options.source_timeout_s < 0)
+    return wrong("--source_timeout_s", options.source_timeout_s, "0 (no limit) or more");
+  if (options.source.empty() && !std::filesystem::exists(options.data, error))
     return fail(ErrorCode::NotFound,
                 fmt::format("--data '{}' does not exist; expected a folder of CityGML or CityJSON "
                             "files",

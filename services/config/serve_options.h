@@ -22,7 +22,13 @@ bool is_loopback(const Endpoint& endpoint);
 
 /// All settings of `citymesh serve`.
 struct ServeOptions {
-  std::filesystem::path data{};                    ///< folder of city models that jobs read
+  // What jobs read: one of the two.
+  std::filesystem::path data{};          ///< folder of city models
+  std::string source{};                  ///< URL of a 3DCityDB: postgresql://…
+  std::string source_schema = "citydb";  ///< of that database
+  unsigned source_connections = 4;       ///< to it, at the same time
+  int source_timeout_s = 600;            ///< of one statement; 0: none
+
   std::filesystem::path state = "citymesh-state";  ///< jobs and results
   Endpoint listen{"127.0.0.1", 8080};              ///< REST
   Endpoint grpc{"127.0.0.1", 50051};
@@ -75,6 +81,9 @@ struct ServeOptions {
 
   std::string log_level = "info";  ///< debug, info, warning, error
 };
+
+/// A text without the passwords of the URLs and connection strings in it.
+std::string without_passwords(const std::string& text);
 
 /// Errors: InvalidArgument naming the first setting that cannot be used, its value and what is
 /// expected.

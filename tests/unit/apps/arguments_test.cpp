@@ -115,6 +115,31 @@ TEST(Endpoints, AreReadAsHostAndPort) {
     EXPECT_FALSE(parse_endpoint(text)) << text;
 }
 
+TEST(ServeOptions, ADatabaseTakesThePlaceOfAFolder) {
+  ServeOptions options;
+  options.source = "postgresql://anna@db.test/city";
+  EXPECT_TRUE(check(options));
+  options.data = "/srv/city";
+  EXPECT_THAT(check(options).error().message, HasSubstr("both given"));
+  options.data.clear();
+  options.source = "mysql://anna:secret@db.test/city";
+  const auto refused = check(options);
+  EXPECT_THAT(refused.error().message, HasSubstr("--source is 'mysql://anna:***@db.test/city'"));
+  options.source = "postgresql://db.test/city";
+  options.source_connections = 0;
+  EXPECT_THAT(check(options).error().message, HasSubstr("--source_connections is 0"));
+}
+
+TEST(ServeOptions, PasswordsAreNotShown) {
+  EXPECT_EQ(without_passwords("source=\"postgresql://anna:se:cr@t@db.test:5432/city\"\nworkers=1"),
+            "source=\"postgresql://anna:***@db.test:5432/city\"\nworkers=1");
+  EXPECT_EQ(
+      without_passwords("postgresql://db.test/city?user=anna&password=secret&sslmode=require"),
+      "postgresql://db.test/city?user=anna&password=***&sslmode=require");
+  EXPECT_EQ(without_passwords("http://127.0.0.1:8080/ and anna@db.test"),
+            "http://127.0.0.1:8080/ and anna@db.test");
+}
+
 TEST(ServeOptions, NameTheSettingThatCannotBeUsed) {
   ServeOptions options;
   EXPECT_THAT(check(options).error().message, HasSubstr("--data"));

@@ -1,0 +1,94 @@
+#include "services/apps/serve_data.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "core/processes/inputs.h"
+#include "core/processes/processes.h"
+#include "core/source/source.h"
+#include "services/catalogue/catalogue.h"
+#include "services/catalogue/data_version.h"
+#include "services/citydb/citydb.h"
+#include "services/worker/limited_source.h"
+
+namespace citymesh {
+namespace {
+
+/// No job takes more than it may.
+SourceFactory within_limits(SourceFactory open, const ServeOptions& options) {
+  const JobLimits limits{.buildings = options.max_job_buildings, .points = options.max_job_points};
+  return [open = std::move(open), limits]() -> Result<std::unique_ptr<CitySource>> {
+    auto source = open();
+    if (!source) return source.error();
+    return limited(*std::move(source), limits);
+  };
+}
+
+/// No box is larger than it may be.
+std::function<Result<void>(const std::string&, const std::string&)> area_check(double max_km2) {
+  if (max_km2 <= 0) return {};
+  return [max_km2](const std::string& process, const std::string& inputs_json) -> Result<void> {
+    if (find_process(process) == nullptr) return {};  // reads no buildings
+    const auto inputs = read_inputs(inputs_json);
+    return inputs ? check_area(inputs->query, max_km2) : inputs.error();
+  };
+}
+
+Result<SourceFactory> open_folder(const ServeOptions& options, Log& log,
+                                  const std::stop_token& stop) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(options.data, ignored)) {
+    SourceFactory file = [data = options.data] { return open_files({data}, {}); };
+    if (auto opened = file(); !opened) return opened.error();
+    return file;
+  }
+  CatalogueOptions catalogue{.data = options.data, .state = default_catalogue(options.data)};
+  if (!has_catalogue(catalogue.state)) catalogue.state = options.state / "catalogue";
+  RunContext context;
+  context.stop = stop;
+  context.threads =
+      options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  log.info("indexing", {{"data", options.data.string()}, {"catalogue", catalogue.state.string()}});
+  const auto report = update_catalogue(catalogue, context);
+  if (!report) return report.error();
+  for (const auto& [file, problem] : report->problems)
+    log.warning("file_not_read", {{"file", file}, {"message", problem}});
+  log.info("indexed", {{"files", report->files},
+                       {"buildings", report->buildings},
+                       {"new_or_changed", report->indexed},
+                       {"removed", report->removed}});
+  return SourceFactory([catalogue] { return open_catalogued(catalogue); });
+}
+
+Result<SourceFactory> open_database(const ServeOptions& options) {
+  auto database = open_citydb({.url = options.source,
+                               .schema = options.source_schema,
+                               .max_connections = options.source_connections,
+                               .statement_timeout_s = options.source_timeout_s});
+  if (!database) return database.error();
+  return SourceFactory(*std::move(database));
+}
+
+}  // namespace
+
+Result<ServedData> open_served_data(const ServeOptions& options, Log& log,
+                                    const std::stop_token& stop) {
+  ServedData served;
+  auto opened = options.source.empty() ? open_folder(options, log, stop) : open_database(options);
+  if (!opened) return opened.error();
+  served.open = within_limits(*std::move(opened), options);
+  served.check_inputs = area_check(options.max_job_area_km2);
+  if (options.source.empty()) {
+    served.name = options.data.string();
+    served.version = [data = options.data] { return data_version(data); };
+  } else if (auto shown = shown_citydb_url(options.source)) {
+    served.name = *std::move(shown);
+  }
+  return served;
+}
+
+}  // namespace citymesh

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <stop_token>
+#include <string>
+
+#include "core/base/result.h"
+#include "services/config/serve_options.h"
+#include "services/telemetry/log.h"
+#include "services/worker/run_offered.h"
+
+namespace citymesh {
+
+/// What the jobs of a service read.
+struct ServedData {
+  std::string name{};    ///< for people: a folder, or the address of a database without secrets
+  SourceFactory open{};  ///< within the limits of a job
+  /// Text that differs whenever what jobs read does; none: unknown.
+  std::function<std::string()> version{};
+  /// Refuses a box that is larger than it may be; empty: no limit.
+  std::function<Result<void>(const std::string& process, const std::string& inputs_json)>
+      check_inputs{};
+};
+
+/// A folder is opened through its catalogue, which is brought up to date now rather than in the
+/// first job; a single file as it is; a database through its connections. Errors: those of what is
+/// opened.
+Result<ServedData> open_served_data(const ServeOptions& options, Log& log,
+                                    const std::stop_token& stop);
+
+}  // namespace citymesh

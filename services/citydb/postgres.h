@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/result.h"
+
+struct pg_conn;
+struct pg_result;
+
+namespace citymesh::postgres {
+
+/// The answer of a statement. Values came in binary; a NULL is 0, 0.0 or empty.
+class Rows {
+ public:
+  explicit Rows(pg_result* result) : result_(result) {}
+
+  int size() const;
+  bool null(int row, int column) const;
+  /// Of smallint, integer, bigint and boolean.
+  std::int64_t integer(int row, int column) const;
+  /// Of real and double precision.
+  double number(int row, int column) const;
+  /// Of text types, and the bytes of any other type.
+  std::string_view text(int row, int column) const;
+  /// Of double precision[]; NULLs in it are 0.
+  std::vector<double> numbers(int row, int column) const;
+
+ private:
+  struct Closer {
+    void operator()(pg_result* result) const;
+  };
+  std::unique_ptr<pg_result, Closer> result_;
+};
+
+/// `sql` is a literal of ours, what comes from outside is among the parameters, as PostgreSQL's
+/// text form.
+struct Statement {
+  const char* sql;
+  std::vector<std::string> parameters{};
+};
+
+/// "{1,2,3}", the text form of bigint[].
+std::string array_of(std::span<const std::int64_t> numbers);
+/// "{"a","b"}", the text form of text[].
+std::string array_of(std::span<const std::string> texts);
+
+struct ConnectionOptions {
+  std::string url{};  ///< postgresql://user@host/database or key=value, as libpq takes it
+  int connect_timeout_s = 10;
+  int statement_timeout_s = 0;  ///< 0: none
+};
+
+/// "postgresql://host:port/database": what may be shown of a URL. Errors: InvalidArgument without
+/// any part of the URL that could be a password.
+Result<std::string> shown_url(const std::string& url);
+
+/// For one thread at a time.
+class Connection {
+ public:
+  /// Errors: Unavailable, PermissionDenied for credentials, InvalidArgument for the URL.
+  static Result<Connection> open(const ConnectionOptions& options);
+
+  /// Sends all statements in one go; the answers come in their order. Each is prepared once.
+  /// Errors: Cancelled when stopped, Unavailable when the connection is lost, DeadlineExceeded for
+  /// the statement timeout, PermissionDenied and FailedPrecondition for what an operator must
+  /// change in the database, Internal else. After an error the connection is of no more use.
+  Result<std::vector<Rows>> run(std::span<const Statement> statements, const std::stop_token& stop);
+  Result<Rows> run(const Statement& statement, const std::stop_token& stop);
+
+  bool usable() const;  ///< neither lost nor in the middle of something
+  /// Ends a transaction, if there is one.
+  void roll_back();
+
+ private:
+  struct Closer {
+    void operator()(pg_conn* connection) const;
+  };
+  explicit Connection(pg_conn* connection) : connection_(connection) {}
+
+  Result<void> send(const Statement& statement);
+  /// The next answer, waiting for it; null where a statement has no more.
+  Result<pg_result*> receive(const std::stop_token& stop);
+  void cancel();
+  Error lost() const;
+
+  std::unique_ptr<pg_conn, Closer> connection_;
+  std::vector<const char*> prepared_{};
+  bool broken_ = false;
+};
+
+}  // namespace citymesh::postgres

@@ -1,0 +1,91 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "services/citydb/citydb.h"
+#include "services/citydb/schema.h"
+#include "tests/support/citydb/citydb_test.h"
+#include "tests/support/citydb/database.h"
+#include "tests/support/citydb/loader.h"
+
+namespace citymesh {
+namespace {
+
+using citydb_support::Database;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr std::uint32_t kCopies = 61;  // of 166 buildings: 10,126
+
+/// A city of ten thousand buildings.
+class PlansOfStatements : public citydb_support::CityDbTest {};
+
+/// The statement with its parameters as literals.
+std::string explained(const postgres::Statement& statement) {
+  std::string sql = statement.sql;
+  for (std::size_t p = statement.parameters.size(); p > 0; --p) {
+    const auto name = fmt::format("${}", p);
+    const auto value = citydb_support::literal(statement.parameters[p - 1]);
+    for (auto at = sql.find(name); at != std::string::npos; at = sql.find(name, at + value.size()))
+      sql.replace(at, name.size(), value);
+  }
+  return "EXPLAIN " + sql;
+}
+
+TEST_F(PlansOfStatements, NoTableOfObjectsOrGeometryIsReadThrough) {
+  citydb_support::LoadOptions options;
+  options.schema.major = 4;
+  options.schema.srid = 25833;
+  options.copies = kCopies;
+  const auto url = server().create_citydb(options.schema);
+  ASSERT_TRUE(url) << url.error().message;
+  const auto loaded =
+      citydb_support::load(*url, options, CITYMESH_TEST_DATA "/berlin/3910_5817.gml");
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EXPECT_GE(loaded->buildings, 10'000u);
+  auto database = Database::open(*url);
+  ASSERT_TRUE(database);
+  ASSERT_TRUE(database->run("ANALYZE"));
+  ASSERT_TRUE(database->run("SET search_path TO citydb, public"));
+
+  auto connection = postgres::Connection::open({.url = *url});
+  ASSERT_TRUE(connection) << connection.error().message;
+  const std::vector<postgres::Statement> path{{"SET search_path TO citydb, public"}};
+  ASSERT_TRUE(connection->run(path, {}));
+  const auto instance = citydb::look_at(*connection, "citydb", {});
+  ASSERT_TRUE(instance) << instance.error().message;
+  const auto schema = citydb::schema_v4();
+
+  // A box around one copy: less than one building in a hundred.
+  const auto extent = database->rows(
+      "SELECT ST_XMin(e), ST_YMin(e), ST_XMin(e) + 60, ST_YMin(e) + 60 FROM (SELECT"
+      " ST_Extent(envelope) AS e FROM cityobject WHERE gmlid NOT LIKE '%#_c%' ESCAPE '#' AND"
+      " objectclass_id = 26) x");
+  ASSERT_TRUE(extent) << extent.error().message;
+  const auto number = [&](std::size_t c) { return std::stod(*extent->front()[c]); };
+  const source::FlatBox box{{number(0), number(1)}, {number(2), number(3)}};
+  const auto found = connection->run(schema->candidates(*instance, box), {});
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_GT(found->size(), 0);
+  ASSERT_LE(found->size(), 101);
+
+  std::vector<std::int64_t> ids;
+  for (int row = 0; row < found->size(); ++row) ids.push_back(found->integer(row, 0));
+  const std::vector<std::string> gml_ids{std::string(found->text(0, 1))};
+  auto statements = schema->statements(*instance, ids);
+  statements.push_back(schema->candidates(*instance, box));
+  statements.push_back(schema->candidates_by_id(*instance, gml_ids));
+  statements.push_back(schema->members(*instance, ids));
+  EXPECT_LE(statements.size(), 10u) << "a constant number, none per building";
+  for (const auto& statement : statements) {
+    const auto plan = database->rows(explained(statement));
+    ASSERT_TRUE(plan) << statement.sql << ": " << plan.error().message;
+    std::string text;
+    for (const auto& row : *plan) text += *row.front() + '\n';
+    for (const auto* table : {"cityobject", "surface_geometry", "thematic_surface", "building"})
+      EXPECT_THAT(text, Not(HasSubstr(fmt::format("Seq Scan on {} ", table)))) << statement.sql;
+  }
+}
+
+}  // namespace
+}  // namespace citymesh
