@@ -1,5 +1,3 @@
-#include <stdlib.h>
-
 #include <algorithm>
 #include <map>
 #include <mutex>
@@ -10,6 +8,7 @@
 #include "core/source/listing.h"
 #include "core/source/scan.h"
 #include "core/source/source.h"
+#include "core/source/temporary_folder.h"
 #include "core/source/zip.h"
 
 namespace citymesh {
@@ -17,34 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace source;
-
-/// A folder of its own below the system's for such things, removed at the end.
-class TemporaryFolder {
- public:
-  static Result<TemporaryFolder> make() {
-    std::error_code error;
-    std::string name = (fs::temp_directory_path(error) / "citymesh-XXXXXX").string();
-    if (error || !::mkdtemp(name.data()))
-      return fail(ErrorCode::Unavailable, "no temporary folder can be made to unpack archives");
-    TemporaryFolder folder;
-    folder.path_ = name;
-    return folder;
-  }
-  TemporaryFolder() = default;
-  TemporaryFolder(TemporaryFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
-  TemporaryFolder& operator=(TemporaryFolder&& other) noexcept {
-    std::swap(path_, other.path_);
-    return *this;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_{};
-};
 
 /// What first passes found, kept in memory until a file changes.
 class ScannedFiles final : public Catalogue {
@@ -93,7 +64,7 @@ class ScannedFiles final : public Catalogue {
       }
       Archive& known = archives_[file.path];
       if (!file.stamp || known.stamp != file.stamp) {
-        auto folder = TemporaryFolder::make();
+        auto folder = TemporaryFolder::make("to unpack archives");
         if (!folder) return folder.error();
         auto members = unpack_archive(file, folder->path(), limits_);
         if (!members) {

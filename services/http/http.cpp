@@ -136,8 +136,9 @@ Result<HttpAnswer> ask(const HttpRequest& request, const std::stop_token& stop) 
   if (exchange.refused && status == 0)
     return fail(ErrorCode::PermissionDenied, "the address may not be connected to");
   if (code != CURLE_OK && exchange.answer.is_whole)
-    return fail(ErrorCode::Unavailable,
-                reason[0] != '\0' ? reason.data() : curl_easy_strerror(code));
+    return fail(
+        code == CURLE_OPERATION_TIMEDOUT ? ErrorCode::DeadlineExceeded : ErrorCode::Unavailable,
+        reason[0] != '\0' ? reason.data() : curl_easy_strerror(code));
   exchange.answer.status = static_cast<int>(status);
   return std::move(exchange.answer);
 }

@@ -31,8 +31,9 @@ struct HttpAnswer {
 };
 
 /// Sends a request and returns the answer, whatever its status. Redirects are not followed,
-/// certificates are verified. Errors: Unavailable with the reason, PermissionDenied for an address
-/// that may not be connected to, Cancelled when stopped.
+/// certificates are verified. Errors: Unavailable with the reason, DeadlineExceeded after
+/// `timeout_s`, PermissionDenied for an address that may not be connected to, Cancelled when
+/// stopped.
 Result<HttpAnswer> ask(const HttpRequest& request, const std::stop_token& stop = {});
 
 }  // namespace citymesh

@@ -10,6 +10,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -50,6 +51,11 @@ class HttpReceiver {
     answers_.push_back("HTTP/1.1 " + std::move(head) + "\r\nContent-Length: " +
                        std::to_string(body.size()) + "\r\nConnection: close\r\n\r\n" + body);
   }
+  /// What answers when there are none left: a whole answer, "HTTP/1.1 200 OK\r\n…".
+  void answer_by(std::function<std::string(const std::string& request)> responder) {
+    const std::scoped_lock lock(mutex_);
+    responder_ = std::move(responder);
+  }
   /// The next request as it came: header and body. Nothing when none comes in time.
   std::optional<std::string> next(std::chrono::milliseconds patience = std::chrono::seconds(30)) {
     std::unique_lock lock(mutex_);
@@ -80,16 +86,20 @@ class HttpReceiver {
       if (socket < 0) return;
       const timeval limit{20, 0};
       ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-      auto request = receive(socket);
+      const auto request = receive(socket);
       std::string reply = "HTTP/1.1 204 No Content\r\nConnection: close\r\n\r\n";
+      std::function<std::string(const std::string&)> responder;
       {
         const std::scoped_lock lock(mutex_);
         if (!answers_.empty()) {
           reply = std::move(answers_.front());
           answers_.pop_front();
+        } else {
+          responder = responder_;
         }
-        requests_.push_back(std::move(request));
+        requests_.push_back(request);
       }
+      if (responder) reply = responder(request);
       (void)::send(socket, reply.data(), reply.size(), MSG_NOSIGNAL);
       ::close(socket);
       arrived_.notify_all();
@@ -116,6 +126,7 @@ class HttpReceiver {
   std::condition_variable arrived_;
   std::deque<std::string> requests_;
   std::deque<std::string> answers_;
+  std::function<std::string(const std::string&)> responder_;
   std::thread thread_;
 };
 

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "services/wfs/pages.h"
+#include "services/wfs/server.h"
+
+namespace citymesh::wfs {
+
+struct Content {
+  std::shared_ptr<Pages> pages{};
+  std::vector<std::string> warnings{};
+};
+
+/// Stores what a query asks for as files in a folder: all that the server finds in the box, or
+/// everything where there is neither box nor ids, then what was not among it of the ids. Errors: as
+/// CitySource::select and open_wfs.
+Result<Content> download(const Server& server, const BuildingQuery& query,
+                         const std::filesystem::path& folder, const RunContext& context);
+
+}  // namespace citymesh::wfs
