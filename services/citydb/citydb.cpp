@@ -69,7 +69,7 @@ class CityDbSource final : public CitySource {
     auto instance = look_at(connection, options_.schema, context.stop);
     if (!instance) return instance.error();
     session->instance = *std::move(instance);
-    session->schema = schema_v4();
+    session->schema = session->instance.major == 5 ? schema_v5() : schema_v4();
 
     auto asked = query;  // PostGIS has x for east, whatever a CRS says
     if (asked.axis_order == AxisOrder::Auto) asked.axis_order = AxisOrder::EastNorth;

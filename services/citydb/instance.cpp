@@ -56,8 +56,6 @@ Result<Instance> look_at(postgres::Connection& connection, const std::string& sc
   if (probe->integer(0, 3) == 0) return no_citydb(schema, "has no PostGIS in reach");
   if (!v4 && !v5) return no_citydb(schema, "has neither table surface_geometry nor geometry_data");
 
-  if (v5) return no_citydb(schema, "is of version 5, which is not read yet");
-
   Instance instance;
   instance.major = v5 ? 5 : 4;
   instance.version = std::to_string(instance.major);

@@ -87,5 +87,6 @@ class Schema {
 };
 
 std::unique_ptr<const Schema> schema_v4();
+std::unique_ptr<const Schema> schema_v5();
 
 }  // namespace citymesh::citydb

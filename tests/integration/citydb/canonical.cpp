@@ -68,7 +68,9 @@ void add(const Building& building, unsigned depth, std::string& text) {
   };
   std::vector<std::string> attributes, addresses, surfaces, geometries;
   for (const auto& [name, attribute] : building.attributes)
-    if (name != "creationDate")
+    if (name == "yearOfConstruction" || name == "yearOfDemolition")  // version 5 has dates
+      attributes.push_back(fmt::format("dateOf{} = {}-01-01", name.substr(6), value(attribute)));
+    else if (name != "creationDate")
       attributes.push_back(fmt::format("{} = {}", name, value(attribute)));
   for (const auto& a : building.addresses)
     addresses.push_back(fmt::format("{}|{}|{}|{}|{}|{}|{}", a.street, a.house_number, a.po_box,

@@ -90,7 +90,7 @@ TEST_P(StoredModel, IsTheModelOfTheFile) {
   ASSERT_TRUE(expected) << expected.error().message;
 
   const bool old = (*whole).inputs.front().format.find("3.0") == std::string::npos;
-  for (const auto& [major, minor] : {std::pair{4, 4}}) {
+  for (const auto& [major, minor] : {std::pair{4, 4}, std::pair{5, 0}, std::pair{5, 1}}) {
     if (major == 4 && !old) continue;  // version 4 cannot hold CityGML 3.0
     const LoadOptions options{.schema = {.major = major, .minor = minor, .srid = *srid}};
     const auto url = server().create_citydb(options.schema);
@@ -118,7 +118,8 @@ TEST_F(HouseByHand, IsTheHouseOfTheFile) {
   const auto expected = read_model(**from_file, query);
   ASSERT_TRUE(expected) << expected.error().message;
   ASSERT_EQ(expected->size(), 1u);
-  for (const auto& [major, sql_file] : {std::pair{4, "fixture_v4.sql"}}) {
+  for (const auto& [major, sql_file] :
+       {std::pair{4, "fixture_v4.sql"}, std::pair{5, "fixture_v5.sql"}}) {
     const auto url = server().create_citydb({.major = major, .srid = 25832});
     ASSERT_TRUE(url) << url.error().message;
     auto database = citydb_support::Database::open(*url);

@@ -18,7 +18,8 @@ using ::testing::Not;
 constexpr std::uint32_t kCopies = 61;  // of 166 buildings: 10,126
 
 /// A city of ten thousand buildings.
-class PlansOfStatements : public citydb_support::CityDbTest {};
+class PlansOfStatements : public citydb_support::CityDbTest,
+                          public testing::WithParamInterface<int> {};
 
 /// The statement with its parameters as literals.
 std::string explained(const postgres::Statement& statement) {
@@ -32,9 +33,9 @@ std::string explained(const postgres::Statement& statement) {
   return "EXPLAIN " + sql;
 }
 
-TEST_F(PlansOfStatements, NoTableOfObjectsOrGeometryIsReadThrough) {
+TEST_P(PlansOfStatements, NoTableOfObjectsOrGeometryIsReadThrough) {
   citydb_support::LoadOptions options;
-  options.schema.major = 4;
+  options.schema.major = GetParam();
   options.schema.srid = 25833;
   options.copies = kCopies;
   const auto url = server().create_citydb(options.schema);
@@ -54,13 +55,16 @@ TEST_F(PlansOfStatements, NoTableOfObjectsOrGeometryIsReadThrough) {
   ASSERT_TRUE(connection->run(path, {}));
   const auto instance = citydb::look_at(*connection, "citydb", {});
   ASSERT_TRUE(instance) << instance.error().message;
-  const auto schema = citydb::schema_v4();
+  const bool old = GetParam() == 4;
+  const auto schema = old ? citydb::schema_v4() : citydb::schema_v5();
 
   // A box around one copy: less than one building in a hundred.
   const auto extent = database->rows(
       "SELECT ST_XMin(e), ST_YMin(e), ST_XMin(e) + 60, ST_YMin(e) + 60 FROM (SELECT"
-      " ST_Extent(envelope) AS e FROM cityobject WHERE gmlid NOT LIKE '%#_c%' ESCAPE '#' AND"
-      " objectclass_id = 26) x");
+      " ST_Extent(envelope) AS e FROM " +
+      std::string(old ? "cityobject WHERE objectclass_id = 26 AND gmlid"
+                      : "feature WHERE objectclass_id = 901 AND objectid") +
+      " NOT LIKE '%#_c%' ESCAPE '#') x");
   ASSERT_TRUE(extent) << extent.error().message;
   const auto number = [&](std::size_t c) { return std::stod(*extent->front()[c]); };
   const source::FlatBox box{{number(0), number(1)}, {number(2), number(3)}};
@@ -82,10 +86,13 @@ TEST_F(PlansOfStatements, NoTableOfObjectsOrGeometryIsReadThrough) {
     ASSERT_TRUE(plan) << statement.sql << ": " << plan.error().message;
     std::string text;
     for (const auto& row : *plan) text += *row.front() + '\n';
-    for (const auto* table : {"cityobject", "surface_geometry", "thematic_surface", "building"})
+    for (const auto* table : {"cityobject", "surface_geometry", "thematic_surface", "building",
+                              "feature", "property", "geometry_data"})
       EXPECT_THAT(text, Not(HasSubstr(fmt::format("Seq Scan on {} ", table)))) << statement.sql;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Versions, PlansOfStatements, testing::Values(4, 5));
 
 }  // namespace
 }  // namespace citymesh
