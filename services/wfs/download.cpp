@@ -114,13 +114,12 @@ class Download {
       return server_.error(added.error().code,
                            "an answer cannot be read: " + added.error().message);
     page.added = *added;
-    if (std::max(page.head.matched.value_or(0), pages_->buildings()) > options.max_features)
-      return server_.error(
-          ErrorCode::ResourceExhausted,
-          fmt::format("{} features are asked for, at most {} may be (max_features); choose a "
-                      "smaller `bbox`",
-                      std::max(page.head.matched.value_or(0), pages_->buildings()),
-                      options.max_features));
+    const auto features = std::max(page.head.matched.value_or(0), pages_->buildings());
+    if (options.max_features > 0 && features > options.max_features)
+      return server_.error(ErrorCode::ResourceExhausted,
+                           fmt::format("{} features are asked for, at most {} may be; choose a "
+                                       "smaller `bbox`, or `object_ids`",
+                                       features, options.max_features));
     return page;
   }
 

@@ -19,7 +19,7 @@ struct WfsOptions {
   double retry_pause_s = 1;                  ///< before the second try; twice that before the third
   std::uint64_t max_answer_bytes = 256ull << 20;
   std::uint64_t max_download_bytes = 16ull << 30;  ///< of all answers of a selection, on disk
-  std::uint64_t max_features = 1'000'000;          ///< of a selection
+  std::uint64_t max_features = 0;                  ///< of a selection; 0: no limit
   ReadLimits limits{};
 };
 

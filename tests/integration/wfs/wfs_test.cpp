@@ -129,6 +129,14 @@ TEST(Wfs, OfSeveralCrsTheProjectedOneIsAskedFor) {
   EXPECT_EQ(server.requests().front().at("SRSNAME"), "urn:ogc:def:crs:EPSG::25833");
 }
 
+TEST(Wfs, ABoxInDegreesHasTheOrderOfTheRegistry) {
+  const TestWfs server(kBerlin, {.default_crs = "urn:ogc:def:crs:EPSG::4258"});
+  EXPECT_EQ(read_wfs(server, {.bbox = RequestBox{13.40, 52.49, 13.41, 52.50}}).error.message, "");
+  const auto box = server.requests().front().at("BBOX");
+  EXPECT_THAT(box, ::testing::StartsWith("52.4"));
+  EXPECT_THAT(box, ::testing::EndsWith(",urn:ogc:def:crs:EPSG::4258"));
+}
+
 TEST(Wfs, IdsAreAskedForByThemselves) {
   const TestWfs server(kBerlin);
   const BuildingQuery query{.object_ids = {"BLDG_00030008004010f2", "nowhere"}};
