@@ -238,7 +238,6 @@ class Builder {
     }
     placement.matrix = *matrix;
     placement.reference = *reference;
-    placement.srs = 1;
     builder_.add_geometry(owner, node, level, level.major == 0, &placement);
     return {};
   }
@@ -293,17 +292,11 @@ std::vector<Statement> about_features(const std::string& features, const std::st
 
 }  // namespace
 
-std::vector<Statement> statements_v5(std::span<const std::int64_t> ids) {
-  const auto list = postgres::array_of(ids);
-  auto statements = about_features(list, list);
-  statements.insert(statements.begin(), {kHierarchy, {list}});
-  statements.push_back({kTemplates, {list}});
-  return statements;
-}
-
 Result<Tables> fetch_v5(postgres::Connection& connection, std::vector<std::int64_t> ids,
                         const std::stop_token& stop) {
-  auto hierarchy = connection.run(Statement{kHierarchy, {postgres::array_of(ids)}}, stop);
+  Tables tables{.ids = std::move(ids)};
+  tables.sent.push_back({kHierarchy, {postgres::array_of(tables.ids)}});
+  auto hierarchy = connection.run(tables.sent.back(), stop);
   if (!hierarchy) return hierarchy.error();
   std::vector<std::int64_t> features, objects;
   for (int row = 0; row < hierarchy->size(); ++row) {
@@ -311,9 +304,9 @@ Result<Tables> fetch_v5(postgres::Connection& connection, std::vector<std::int64
     features.push_back(id);
     if (!is_surface(link_from(hierarchy->text(row, kLinkName)))) objects.push_back(id);
   }
-  const auto all = postgres::array_of(without_repetitions(std::move(features)));
-  const auto some = postgres::array_of(without_repetitions(std::move(objects)));
-  auto rows = connection.run(about_features(all, some), stop);
+  const auto about = about_features(postgres::array_of(without_repetitions(std::move(features))),
+                                    postgres::array_of(without_repetitions(std::move(objects))));
+  auto rows = connection.run(about, stop);
   if (!rows) return rows.error();
 
   std::vector<std::int64_t> templates;
@@ -321,12 +314,15 @@ Result<Tables> fetch_v5(postgres::Connection& connection, std::vector<std::int64
   for (int row = 0; row < geometries.size(); ++row)
     if (!geometries.null(row, kTemplateId))
       templates.push_back(geometries.integer(row, kTemplateId));
-  auto shared = connection.run(
-      Statement{kTemplates, {postgres::array_of(without_repetitions(std::move(templates)))}}, stop);
+  tables.sent.insert(tables.sent.end(), about.begin(), about.end());
+  tables.sent.push_back(
+      {kTemplates, {postgres::array_of(without_repetitions(std::move(templates)))}});
+  auto shared = connection.run(tables.sent.back(), stop);
   if (!shared) return shared.error();
-  rows->insert(rows->begin(), *std::move(hierarchy));
-  rows->push_back(*std::move(shared));
-  return Tables{std::move(ids), *std::move(rows)};
+  tables.rows = *std::move(rows);
+  tables.rows.insert(tables.rows.begin(), *std::move(hierarchy));
+  tables.rows.push_back(*std::move(shared));
+  return tables;
 }
 
 Result<void> build_v5(const Tables& tables, const Instance& instance, FeatureBuilder& builder,

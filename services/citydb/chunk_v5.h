@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <stop_token>
 #include <vector>
 
@@ -10,8 +9,6 @@
 
 namespace citymesh::citydb {
 
-/// Schema::statements().
-std::vector<postgres::Statement> statements_v5(std::span<const std::int64_t> ids);
 /// Schema::fetch() and Schema::build() of version 5: three exchanges with the database (what the
 /// buildings contain; all that these features have; the templates of implicit geometry).
 Result<Tables> fetch_v5(postgres::Connection& connection, std::vector<std::int64_t> ids,

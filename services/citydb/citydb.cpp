@@ -53,6 +53,10 @@ class CityDbSource final : public CitySource {
                   "buildings again");
     auto done = read_chunks(*session, query, selection, sink, context);
     session->lease.reset();
+    if (!done && done.error().code == ErrorCode::Unavailable)
+      return fail(
+          ErrorCode::Unavailable,
+          done.error().message + "; what was selected is gone with it: submit the job again");
     return done;
   }
 
@@ -69,7 +73,7 @@ class CityDbSource final : public CitySource {
     auto instance = look_at(connection, options_.schema, context.stop);
     if (!instance) return instance.error();
     session->instance = *std::move(instance);
-    session->schema = session->instance.major == 5 ? schema_v5() : schema_v4();
+    session->schema = schema_of(session->instance);
 
     auto asked = query;  // PostGIS has x for east, whatever a CRS says
     if (asked.axis_order == AxisOrder::Auto) asked.axis_order = AxisOrder::EastNorth;

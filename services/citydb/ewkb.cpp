@@ -64,7 +64,6 @@ class Reader {
 
   bool points(std::uint32_t number, unsigned dimension, std::vector<Point3>& to) {
     if (rest_.size() / (sizeof(double) * dimension) < number) return false;
-    to.reserve(to.size() + number);
     for (std::uint32_t p = 0; p < number; ++p) {
       Point3 point{real(0), real(1), dimension > 2 ? real(2) : 0};
       rest_.remove_prefix(sizeof(double) * dimension);

@@ -99,12 +99,18 @@ FeatureBuilder::Tree::NodeId FeatureBuilder::add_polygon(Owner owner, Tree::Node
 void FeatureBuilder::add_geometry(Owner owner, Tree::NodeId root, Lod lod, bool footprint,
                                   const source::Placement* placement) {
   tree_.set_lod(root, lod.major);
+  std::int32_t place = -1;
+  if (placement != nullptr) {
+    auto here = *placement;
+    here.srs = srs_;
+    place = tree_.add_placement(here);
+  }
   tree_.add_root({.node = root,
                   .object = owner.object,
                   .surface = owner.surface,
                   .lod = lod,
                   .footprint = footprint,
-                  .placement = placement == nullptr ? -1 : tree_.add_placement(*placement)});
+                  .placement = place});
 }
 
 source::Feature& FeatureBuilder::finish() {

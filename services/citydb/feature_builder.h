@@ -42,7 +42,7 @@ class FeatureBuilder {
   Tree::NodeId add_polygon(Owner owner, Tree::NodeId parent, Tree::Role role,
                            std::string_view gml_id, const StoredPolygons& stored,
                            const StoredPolygon& polygon);
-  /// A geometry is complete.
+  /// A geometry is complete. The reference point of a placement has the CRS of all coordinates.
   void add_geometry(Owner owner, Tree::NodeId root, Lod lod, bool footprint = false,
                     const source::Placement* placement = nullptr);
 

@@ -94,4 +94,8 @@ Result<Instance> look_at(postgres::Connection& connection, const std::string& sc
   return instance;
 }
 
+std::unique_ptr<const Schema> schema_of(const Instance& instance) {
+  return instance.major == 5 ? schema_v5() : schema_v4();
+}
+
 }  // namespace citymesh::citydb

@@ -31,10 +31,17 @@ double double_of(const char* bytes) {
   return std::bit_cast<double>(big_endian<std::uint64_t>(bytes));
 }
 
+/// With one blank for every gap.
 std::string one_line(const char* text) {
-  std::string line = text == nullptr ? "" : text;
-  while (!line.empty() && (line.back() == '\n' || line.back() == ' ')) line.pop_back();
-  std::ranges::replace(line, '\n', ' ');
+  std::string line;
+  for (const char* c = text == nullptr ? "" : text; *c != '\0'; ++c) {
+    const bool gap = *c == '\n' || *c == '\t' || *c == ' ';
+    if (!gap)
+      line += *c;
+    else if (!line.empty() && line.back() != ' ')
+      line += ' ';
+  }
+  while (line.ends_with(' ')) line.pop_back();
   return line;
 }
 

@@ -51,6 +51,7 @@ struct Candidate {
 struct Tables {
   std::vector<std::int64_t> ids{};
   std::vector<postgres::Rows> rows{};
+  std::vector<postgres::Statement> sent{};  ///< what was asked, for who measures and explains it
 };
 
 /// Where the two versions keep the same things. Objects are values without state of their own: for
@@ -73,11 +74,7 @@ class Schema {
   virtual postgres::Statement members(const Instance& instance,
                                       std::span<const std::int64_t> ids) const = 0;
 
-  /// What fetch() sends, whatever the number of buildings; the last reads geometry, here by ids
-  /// that are none of its own.
-  virtual std::vector<postgres::Statement> statements(const Instance& instance,
-                                                      std::span<const std::int64_t> ids) const = 0;
-  /// All that is to be known of these buildings.
+  /// All that is to be known of these buildings, by a constant number of statements.
   virtual Result<Tables> fetch(postgres::Connection& connection, const Instance& instance,
                                std::vector<std::int64_t> ids,
                                const std::stop_token& stop) const = 0;
@@ -88,5 +85,6 @@ class Schema {
 
 std::unique_ptr<const Schema> schema_v4();
 std::unique_ptr<const Schema> schema_v5();
+std::unique_ptr<const Schema> schema_of(const Instance& instance);
 
 }  // namespace citymesh::citydb

@@ -41,6 +41,9 @@ constexpr const char* kById =
     " ST_XMax(c.envelope), ST_YMax(c.envelope), ST_ZMax(c.envelope)"
     " FROM cityobject c WHERE c.objectclass_id = ANY($1::int[]) AND c.termination_date IS NULL"
     " AND c.id IN (SELECT b.building_root_id FROM cityobject p JOIN building b ON b.id = p.id"
+    " WHERE p.gmlid = ANY($2::text[]) AND p.termination_date IS NULL"
+    " UNION SELECT b.building_root_id FROM cityobject p JOIN building_installation i ON i.id = p.id"
+    " JOIN building b ON b.id = i.building_id"
     " WHERE p.gmlid = ANY($2::text[]) AND p.termination_date IS NULL) ORDER BY c.id";
 constexpr const char* kMembers =
     "SELECT b.building_root_id, c.gmlid, c.id FROM building b JOIN cityobject c ON c.id = b.id"
@@ -53,7 +56,8 @@ constexpr const char* kMembers =
 
 constexpr const char* kBuildings =
     "SELECT b.building_root_id, b.id, coalesce(b.building_parent_id, 0), b.objectclass_id, c.gmlid,"
-    " c.description, c.name, to_char(c.creation_date, 'YYYY-MM-DD'), c.relative_to_terrain,"
+    " c.description, c.name, to_char(c.creation_date AT TIME ZONE 'UTC', 'YYYY-MM-DD'), "
+    "c.relative_to_terrain,"
     " c.relative_to_water, b.class, b.function, b.usage,"
     " extract(year FROM b.year_of_construction)::bigint,"
     " extract(year FROM b.year_of_demolition)::bigint, b.roof_type, b.measured_height,"
@@ -94,7 +98,8 @@ constexpr const char* kInstallations =
     " g2.relative_brep_id, i.lod2_implicit_ref_point, i.lod2_implicit_transformation,"
     " g3.relative_brep_id, i.lod3_implicit_ref_point, i.lod3_implicit_transformation,"
     " g4.relative_brep_id, i.lod4_implicit_ref_point, i.lod4_implicit_transformation,"
-    " c.description, c.name, to_char(c.creation_date, 'YYYY-MM-DD'), c.relative_to_terrain,"
+    " c.description, c.name, to_char(c.creation_date AT TIME ZONE 'UTC', 'YYYY-MM-DD'), "
+    "c.relative_to_terrain,"
     " c.relative_to_water"
     " FROM building b JOIN building_installation i ON i.building_id = b.id"
     " JOIN cityobject c ON c.id = i.id"
@@ -147,12 +152,12 @@ enum AddressColumn { kStreet = 2 };
 constexpr const char* kGenerics =
     "SELECT b.building_root_id, g.cityobject_id, g.id, coalesce(g.parent_genattrib_id, 0),"
     " g.attrname, g.datatype::bigint, g.strval, g.intval::bigint, g.realval, g.urival,"
-    " to_char(g.dateval, 'YYYY-MM-DD')"
+    " to_char(g.dateval AT TIME ZONE 'UTC', 'YYYY-MM-DD')"
     " FROM building b JOIN cityobject_genericattrib g ON g.cityobject_id = b.id"
     " WHERE b.building_root_id = ANY($1::bigint[])"
     " UNION ALL SELECT b.building_root_id, g.cityobject_id, g.id,"
     " coalesce(g.parent_genattrib_id, 0), g.attrname, g.datatype::bigint, g.strval,"
-    " g.intval::bigint, g.realval, g.urival, to_char(g.dateval, 'YYYY-MM-DD')"
+    " g.intval::bigint, g.realval, g.urival, to_char(g.dateval AT TIME ZONE 'UTC', 'YYYY-MM-DD')"
     " FROM building b JOIN building_installation i ON i.building_id = b.id"
     " JOIN cityobject_genericattrib g ON g.cityobject_id = i.id"
     " WHERE b.building_root_id = ANY($1::bigint[]) ORDER BY 1, 2, 3";
@@ -378,7 +383,6 @@ class Builder {
     if (reference && matrix) {
       placement.matrix = *matrix;
       placement.reference = *reference;
-      placement.srs = 1;
       if (trees_.add(rows.integer(row, column), owner, level, false, &placement, builder_)) return;
     }
     builder_.report(owner.object, issue_code::kUnreadableGeometry,
@@ -510,29 +514,23 @@ class SchemaV4 final : public Schema {
              postgres::array_of(instance.ids_of(ObjectKind::BuildingInstallation))}};
   }
 
-  std::vector<Statement> statements(const Instance& instance,
-                                    std::span<const std::int64_t> ids) const override {
+  Result<Tables> fetch(postgres::Connection& connection, const Instance& instance,
+                       std::vector<std::int64_t> ids, const std::stop_token& stop) const override {
     const auto list = postgres::array_of(ids);
     const auto installations =
         postgres::array_of(instance.ids_of(ObjectKind::BuildingInstallation));
-    return {{kBuildings, {list}}, {kInstallations, {list, installations}},
-            {kSurfaces, {list}},  {kOpenings, {list}},
-            {kAddresses, {list}}, {kGenerics, {list}},
-            {kGeometry, {list}}};
-  }
-
-  Result<Tables> fetch(postgres::Connection& connection, const Instance& instance,
-                       std::vector<std::int64_t> ids, const std::stop_token& stop) const override {
-    // What geometry there is says the answer to the other statements.
-    const auto all = statements(instance, ids);
-    const std::span objects(all.data(), all.size() - 1);
-    auto rows = connection.run(objects, stop);
+    Tables tables{.ids = std::move(ids)};
+    tables.sent = {{kBuildings, {list}}, {kInstallations, {list, installations}},
+                   {kSurfaces, {list}},  {kOpenings, {list}},
+                   {kAddresses, {list}}, {kGenerics, {list}}};
+    auto rows = connection.run(tables.sent, stop);
     if (!rows) return rows.error();
-    auto geometry =
-        connection.run(Statement{kGeometry, {postgres::array_of(roots_of(*rows))}}, stop);
+    tables.rows = *std::move(rows);
+    tables.sent.push_back({kGeometry, {postgres::array_of(roots_of(tables.rows))}});
+    auto geometry = connection.run(tables.sent.back(), stop);
     if (!geometry) return geometry.error();
-    rows->push_back(*std::move(geometry));
-    return Tables{std::move(ids), *std::move(rows)};
+    tables.rows.push_back(*std::move(geometry));
+    return tables;
   }
 
   Result<void> build(const Tables& tables, const Instance& instance, FeatureBuilder& builder,

@@ -83,11 +83,6 @@ class SchemaV5 final : public Schema {
     return {kMembers, {postgres::array_of(ids)}};
   }
 
-  std::vector<Statement> statements(const Instance&,
-                                    std::span<const std::int64_t> ids) const override {
-    return statements_v5(ids);
-  }
-
   Result<Tables> fetch(postgres::Connection& connection, const Instance&,
                        std::vector<std::int64_t> ids, const std::stop_token& stop) const override {
     return fetch_v5(connection, std::move(ids), stop);

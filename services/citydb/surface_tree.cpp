@@ -66,7 +66,7 @@ Tree::NodeId SurfaceTrees::add(const Row& row, FeatureBuilder::Owner owner, Tree
   const auto at = [this](std::int32_t r) -> const Row& {
     return rows_[static_cast<std::size_t>(r)];
   };
-  auto kind = Tree::Kind::Surfaces;
+  auto kind = row.triangulated ? Tree::Kind::CompositeSurface : Tree::Kind::Surfaces;
   if (!row.triangulated) {
     if (row.solid) {
       kind = row.composite ? Tree::Kind::CompositeSolid : Tree::Kind::Solid;

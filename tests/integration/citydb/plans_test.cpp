@@ -21,18 +21,6 @@ constexpr std::uint32_t kCopies = 61;  // of 166 buildings: 10,126
 class PlansOfStatements : public citydb_support::CityDbTest,
                           public testing::WithParamInterface<int> {};
 
-/// The statement with its parameters as literals.
-std::string explained(const postgres::Statement& statement) {
-  std::string sql = statement.sql;
-  for (std::size_t p = statement.parameters.size(); p > 0; --p) {
-    const auto name = fmt::format("${}", p);
-    const auto value = citydb_support::literal(statement.parameters[p - 1]);
-    for (auto at = sql.find(name); at != std::string::npos; at = sql.find(name, at + value.size()))
-      sql.replace(at, name.size(), value);
-  }
-  return "EXPLAIN " + sql;
-}
-
 TEST_P(PlansOfStatements, NoTableOfObjectsOrGeometryIsReadThrough) {
   citydb_support::LoadOptions options;
   options.schema.major = GetParam();
@@ -56,7 +44,7 @@ TEST_P(PlansOfStatements, NoTableOfObjectsOrGeometryIsReadThrough) {
   const auto instance = citydb::look_at(*connection, "citydb", {});
   ASSERT_TRUE(instance) << instance.error().message;
   const bool old = GetParam() == 4;
-  const auto schema = old ? citydb::schema_v4() : citydb::schema_v5();
+  const auto schema = citydb::schema_of(*instance);
 
   // A box around one copy: less than one building in a hundred.
   const auto extent = database->rows(
@@ -76,13 +64,16 @@ TEST_P(PlansOfStatements, NoTableOfObjectsOrGeometryIsReadThrough) {
   std::vector<std::int64_t> ids;
   for (int row = 0; row < found->size(); ++row) ids.push_back(found->integer(row, 0));
   const std::vector<std::string> gml_ids{std::string(found->text(0, 1))};
-  auto statements = schema->statements(*instance, ids);
+  const auto tables = schema->fetch(*connection, *instance, ids, {});
+  ASSERT_TRUE(tables) << tables.error().message;
+  auto statements = tables->sent;
   statements.push_back(schema->candidates(*instance, box));
   statements.push_back(schema->candidates_by_id(*instance, gml_ids));
   statements.push_back(schema->members(*instance, ids));
   EXPECT_LE(statements.size(), 10u) << "a constant number, none per building";
   for (const auto& statement : statements) {
-    const auto plan = database->rows(explained(statement));
+    const auto plan = database->rows(
+        "EXPLAIN " + citydb_support::with_literals(statement.sql, statement.parameters));
     ASSERT_TRUE(plan) << statement.sql << ": " << plan.error().message;
     std::string text;
     for (const auto& row : *plan) text += *row.front() + '\n';

@@ -170,6 +170,7 @@ TEST_F(CityDbSource, ADatabaseThatGoesAwayIsToldAndUsedAgainWhenItIsBack) {
       {});
   ASSERT_FALSE(broken);
   EXPECT_EQ(broken.error().code, ErrorCode::Unavailable);
+  EXPECT_THAT(broken.error().message, HasSubstr("submit the job again"));
   EXPECT_LT(read, selection->buildings);
   const auto away = source_->select(query, {});
   ASSERT_FALSE(away);

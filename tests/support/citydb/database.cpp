@@ -135,4 +135,14 @@ Result<std::string> with_database(const std::string& url, const std::string& dat
 std::string literal(std::string_view text) { return quoted(text, '\''); }
 std::string identifier(std::string_view name) { return quoted(name, '"'); }
 
+std::string with_literals(std::string sql, const std::vector<std::string>& parameters) {
+  for (std::size_t p = parameters.size(); p > 0; --p) {  // $10 before $1
+    const auto name = "$" + std::to_string(p);
+    const auto value = literal(parameters[p - 1]);
+    for (auto at = sql.find(name); at != std::string::npos; at = sql.find(name, at + value.size()))
+      sql.replace(at, name.size(), value);
+  }
+  return sql;
+}
+
 }  // namespace citymesh::citydb_support

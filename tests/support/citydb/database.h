@@ -42,5 +42,7 @@ Result<std::string> with_database(const std::string& url, const std::string& dat
 /// Texts as they stand in SQL: 'it''s', "a name".
 std::string literal(std::string_view text);
 std::string identifier(std::string_view name);
+/// A statement with its parameters $1, $2 … as literals, for what takes none: EXPLAIN, COPY.
+std::string with_literals(std::string sql, const std::vector<std::string>& parameters);
 
 }  // namespace citymesh::citydb_support
