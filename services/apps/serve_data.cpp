@@ -13,6 +13,7 @@
 #include "services/catalogue/catalogue.h"
 #include "services/catalogue/data_version.h"
 #include "services/citydb/citydb.h"
+#include "services/wfs/wfs.h"
 #include "services/worker/limited_source.h"
 
 namespace citymesh {
@@ -73,18 +74,32 @@ Result<SourceFactory> open_database(const ServeOptions& options) {
   return SourceFactory(*std::move(database));
 }
 
+Result<SourceFactory> open_service(const ServeOptions& options) {
+  auto service = open_wfs({.url = options.source, .max_features = options.max_job_buildings});
+  if (!service) return service.error();
+  return SourceFactory(*std::move(service));
+}
+
+bool is_web(const std::string& source) {
+  return source.starts_with("http://") || source.starts_with("https://");
+}
+
 }  // namespace
 
 Result<ServedData> open_served_data(const ServeOptions& options, Log& log,
                                     const std::stop_token& stop) {
   ServedData served;
-  auto opened = options.source.empty() ? open_folder(options, log, stop) : open_database(options);
+  auto opened = options.source.empty()   ? open_folder(options, log, stop)
+                : is_web(options.source) ? open_service(options)
+                                         : open_database(options);
   if (!opened) return opened.error();
   served.open = within_limits(*std::move(opened), options);
   served.check_inputs = area_check(options.max_job_area_km2);
   if (options.source.empty()) {
     served.name = options.data.string();
     served.version = [data = options.data] { return data_version(data); };
+  } else if (is_web(options.source)) {
+    served.name = shown_wfs_url(options.source);
   } else if (auto shown = shown_citydb_url(options.source)) {
     served.name = *std::move(shown);
   }

@@ -13,7 +13,7 @@ namespace citymesh {
 
 /// What the jobs of a service read.
 struct ServedData {
-  std::string name{};    ///< for people: a folder, or the address of a database without secrets
+  std::string name{};    ///< for people: a folder, or an address without secrets
   SourceFactory open{};  ///< within the limits of a job
   /// Text that differs whenever what jobs read does; none: unknown.
   std::function<std::string()> version{};
@@ -23,8 +23,8 @@ struct ServedData {
 };
 
 /// A folder is opened through its catalogue, which is brought up to date now rather than in the
-/// first job; a single file as it is; a database through its connections. Errors: those of what is
-/// opened.
+/// first job; a single file as it is; a database through its connections; a WFS by asking it.
+/// Errors: those of what is opened.
 Result<ServedData> open_served_data(const ServeOptions& options, Log& log,
                                     const std::stop_token& stop);
 

@@ -80,8 +80,8 @@ void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> r
     return command.add_option(name, value, what)->capture_default_str();
   };
   add("--source", options.source,
-      "3DCityDB that jobs read instead: postgresql://user@host:port/database; the password best in "
-      "PGPASSWORD or a PGPASSFILE")
+      "3DCityDB or WFS 2.0 that jobs read instead: postgresql://user@host:port/database (the "
+      "password best in PGPASSWORD or a PGPASSFILE), or its https URL")
       ->type_name("URL");
   add("--source_schema", options.source_schema, "schema of that database");
   add("--source_connections", options.source_connections,

@@ -133,13 +133,16 @@ Result<void> check(const ServeOptions& options) {
     return fail(ErrorCode::InvalidArgument,
                 options.data.empty()
                     ? "--data is missing; expected a folder of CityGML or CityJSON files, or "
-                      "--source with the URL of a 3DCityDB"
+                      "--source with the URL of a 3DCityDB or a WFS"
                     : "--data and --source are both given; expected one of them");
   std::error_code error;
-  if (!options.source.empty() && !options.source.starts_with("postgresql://") &&
-      !options.source.starts_with("postgres://"))
+  constexpr std::array<std::string_view, 4> kSources{"postgresql://", "postgres://", "https://",
+                                                     "http://"};
+  if (!options.source.empty() && std::ranges::none_of(kSources, [&](std::string_view begin) {
+        return options.source.starts_with(begin);
+      }))
     return wrong("--source", fmt::format("'{}'", without_passwords(options.source)),
-                 "postgresql://user@host:port/database");
+                 "postgresql://user@host:port/database of a 3DCityDB or the https URL of a WFS");
   if (options.source_schema.empty())
     return wrong("--source_schema", "empty", "the schema of the 3DCityDB, for example citydb");
   if (options.source_connections < 1 || options.source_connections > kMostThreads)

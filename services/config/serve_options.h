@@ -24,7 +24,7 @@ bool is_loopback(const Endpoint& endpoint);
 struct ServeOptions {
   // What jobs read: one of the two.
   std::filesystem::path data{};          ///< folder of city models
-  std::string source{};                  ///< URL of a 3DCityDB: postgresql://…
+  std::string source{};                  ///< URL of a 3DCityDB (postgresql://…) or a WFS
   std::string source_schema = "citydb";  ///< of that database
   unsigned source_connections = 4;       ///< to it, at the same time
   int source_timeout_s = 600;            ///< of one statement; 0: none

@@ -120,11 +120,12 @@ class Readme(unittest.TestCase):
         self.assertFalse(names["is_genuine"](f"t={int(seconds) - 1},v1={digest}", b"{}", b"secret"))
 
     def test_page_about_rest(self):
-        at_once, as_job, events, verification, download = self.rest_blocks
+        at_once, estimate, as_job, events, verification, download = self.rest_blocks
         self.check_verification(verification[1])
         report = json.loads(self.run_example(at_once))
         self.assertEqual(report["process"], "validate")
         self.assertGreater(report["counts"]["requested"], 0)
+        self.assertEqual(json.loads(self.run_example(estimate))["buildings"], 57)
         accepted = self.run_example(as_job)
         self.assertIn("HTTP/1.1 201", accepted)
         self.assertIn("Preference-Applied: respond-async", accepted)
