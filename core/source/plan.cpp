@@ -189,6 +189,7 @@ class Planner {
         return fail(ErrorCode::InvalidArgument, "bbox: " + moved.error().message);
     }
     std::vector<Point2> flat;
+    flat.reserve(ring.size());
     for (const Point3& point : ring) flat.push_back({point.x, point.y});
     return &areas_.emplace(working.id, Area(std::move(flat))).first->second;
   }
@@ -399,6 +400,7 @@ class Planner {
     if (problem) return *problem;
     if (found.size() > 1) {
       std::vector<std::string> names;
+      names.reserve(found.size());
       for (const auto& [working, source] : found) names.push_back(source);
       return fail(ErrorCode::FailedPrecondition, "the selected buildings are in different CRSs (" +
                                                      joined(names) +

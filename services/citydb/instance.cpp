@@ -10,7 +10,6 @@
 namespace citymesh::citydb {
 namespace {
 
-using postgres::Rows;
 using postgres::Statement;
 
 /// Version 4 has the class names of CityGML with the module in them: OuterBuildingFloorSurface.

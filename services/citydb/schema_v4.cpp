@@ -451,7 +451,7 @@ class Builder {
       if (object < 0) continue;
       std::string name(rows.text(row, kAttribute));
       if (const auto set = names.find(rows.integer(row, kSet)); set != names.end())
-        name = set->second + "." + name;
+        name = fmt::format("{}.{}", set->second, name);
       auto& attributes = builder_.object(object).attributes;
       switch (rows.integer(row, kType)) {
         case 2:

@@ -48,6 +48,8 @@ class WatchedResults final : public ResultStore {
 
 class ResultCacheTest : public WorkerTest {
  protected:
+  void TearDown() override { pool_.reset(); }  // it uses what this class adds
+
   /// A pool with the cache; `runs_` counts the jobs that are worked on.
   void work(WorkerOptions options = {}) {
     options.source_version = [this] {
@@ -249,6 +251,7 @@ TEST_F(ResultCacheTest, ReusedResultsCountForTheLimitOfAJob) {
   const auto job = ended(submitted());
   EXPECT_EQ(job.state, JobState::Failed);
   EXPECT_EQ(job.error->code, ErrorCode::ResourceExhausted);
+  pool_->stop();  // the files go after the state is told
   EXPECT_FALSE(has_files(job.id));
 }
 
