@@ -20,6 +20,21 @@ std::string value(const AttributeValue& attribute) {
   return std::visit([](const auto& known) { return fmt::format("{}", known); }, attribute);
 }
 
+constexpr std::size_t kFewestCorners = 4;  // of a closed ring
+
+bool is_closed(const Geometry& geometry, const Ring& ring) {
+  return !ring.empty() && geometry.points[ring.front()] == geometry.points[ring.back()];
+}
+
+/// With the repeated first one.
+std::size_t corners(const Geometry& geometry, const Ring& ring) {
+  return ring.size() + (ring.empty() || is_closed(geometry, ring) ? 0 : 1);
+}
+
+std::string point_text(const Point3& point) {
+  return fmt::format("{} {} {},", point.x, point.y, point.z);
+}
+
 std::string polygon_text(const Building& building, const Geometry& geometry,
                          const Polygon& polygon) {
   std::string surface = "-";
@@ -29,14 +44,18 @@ std::string polygon_text(const Building& building, const Geometry& geometry,
   }
   auto text = fmt::format("'{}' of {}:", id(polygon.gml_id), surface);
   for (const auto& ring : polygon.rings) {
+    if (corners(geometry, ring) < kFewestCorners) continue;
     text += " (";
-    for (const auto corner : ring) {
-      const auto& point = geometry.points[corner];
-      text += fmt::format("{} {} {},", point.x, point.y, point.z);
-    }
+    for (const auto corner : ring) text += point_text(geometry.points[corner]);
+    if (!is_closed(geometry, ring)) text += point_text(geometry.points[ring.front()]);
     text += ")";
   }
   return text;
+}
+
+/// Whether PostGIS takes a polygon at all.
+bool is_polygon(const Geometry& geometry, const Polygon& polygon) {
+  return !polygon.rings.empty() && corners(geometry, polygon.rings.front()) >= kFewestCorners;
 }
 
 std::string geometry_text(const Building& building, const Geometry& geometry) {
@@ -47,10 +66,11 @@ std::string geometry_text(const Building& building, const Geometry& geometry) {
   if (solid && !geometry.solids.empty()) {
     for (std::size_t s = 0; s < geometry.solids.size(); ++s)
       for (const auto p : geometry.solids[s].exterior)
-        lines.push_back(polygon_text(building, geometry, geometry.polygons[p]));
+        if (is_polygon(geometry, geometry.polygons[p]))
+          lines.push_back(polygon_text(building, geometry, geometry.polygons[p]));
   } else {
     for (const auto& polygon : geometry.polygons)
-      lines.push_back(polygon_text(building, geometry, polygon));
+      if (is_polygon(geometry, polygon)) lines.push_back(polygon_text(building, geometry, polygon));
   }
   std::ranges::sort(lines);
   return fmt::format("LoD {} {}{}{} of {}:\n      {}", geometry.lod.major,

@@ -18,7 +18,7 @@ enum class Store { File, V4, V5 };
 /// - Nesting and kind of lists of surfaces: a MultiSurface, CompositeSurface or one polygon is a
 ///   list of polygons; the decimal of a LoD (2.2), which the tables do not have.
 /// - What was read but is no part of the model: issues, counts of extensions.
-/// - Rings of fewer than four corners, which are no polygons for PostGIS.
+/// - Rings of fewer than four corners, which are none for PostGIS, and that a ring was not closed.
 std::string canonical(const Building& building);
 
 }  // namespace citymesh
