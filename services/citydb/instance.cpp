@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <string_view>
+#include <utility>
 
 #include "services/citydb/schema.h"
 
@@ -91,6 +92,16 @@ Result<Instance> look_at(postgres::Connection& connection, const std::string& sc
   if (instance.ids_of(ObjectKind::Building).empty())
     return no_citydb(schema, "has no class Building in objectclass");
   return instance;
+}
+
+Statement candidates_of(const char* all, const char* in_box, const Instance& instance,
+                        const std::optional<source::FlatBox>& box) {
+  auto classes = postgres::array_of(instance.ids_of(ObjectKind::Building));
+  if (!box) return {all, {std::move(classes)}};
+  return {in_box,
+          {std::move(classes), fmt::format("{}", box->min.x), fmt::format("{}", box->min.y),
+           fmt::format("{}", box->max.x), fmt::format("{}", box->max.y),
+           std::to_string(instance.srid)}};
 }
 
 std::unique_ptr<const Schema> schema_of(const Instance& instance) {

@@ -83,6 +83,11 @@ class Schema {
                              FeatureBuilder& builder, const source::FeatureSink& sink) const = 0;
 };
 
+/// Schema::candidates(): `all` takes the classes of buildings, `in_box` also least x and y,
+/// greatest x and y, and the SRID of the box.
+postgres::Statement candidates_of(const char* all, const char* in_box, const Instance& instance,
+                                  const std::optional<source::FlatBox>& box);
+
 std::unique_ptr<const Schema> schema_v4();
 std::unique_ptr<const Schema> schema_v5();
 std::unique_ptr<const Schema> schema_of(const Instance& instance);

@@ -489,12 +489,7 @@ class SchemaV4 final : public Schema {
  public:
   Statement candidates(const Instance& instance,
                        const std::optional<source::FlatBox>& box) const override {
-    auto classes = postgres::array_of(instance.ids_of(ObjectKind::Building));
-    if (!box) return {kAll, {std::move(classes)}};
-    return {kInBox,
-            {std::move(classes), fmt::format("{}", box->min.x), fmt::format("{}", box->min.y),
-             fmt::format("{}", box->max.x), fmt::format("{}", box->max.y),
-             std::to_string(instance.srid)}};
+    return candidates_of(kAll, kInBox, instance, box);
   }
 
   Statement extent(const Instance& instance) const override {

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <utility>
 
 #include "services/citydb/chunk_v5.h"
@@ -57,12 +55,7 @@ class SchemaV5 final : public Schema {
  public:
   Statement candidates(const Instance& instance,
                        const std::optional<source::FlatBox>& box) const override {
-    auto classes = postgres::array_of(instance.ids_of(ObjectKind::Building));
-    if (!box) return {kAll, {std::move(classes)}};
-    return {kInBox,
-            {std::move(classes), fmt::format("{}", box->min.x), fmt::format("{}", box->min.y),
-             fmt::format("{}", box->max.x), fmt::format("{}", box->max.y),
-             std::to_string(instance.srid)}};
+    return candidates_of(kAll, kInBox, instance, box);
   }
 
   Statement extent(const Instance& instance) const override {
