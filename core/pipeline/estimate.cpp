@@ -54,11 +54,9 @@ std::vector<std::string> problems_of(const Selection& selection) {
 
 Result<Estimate> estimate(std::string_view process, std::string_view inputs_json,
                           CitySource& source, const RunContext& context) {
-  const auto canonical = canonical_inputs(process, inputs_json);
-  if (!canonical) return canonical.error();
-  const auto inputs = read_inputs(*canonical);
+  const auto inputs = canonical_inputs(process, inputs_json);
   if (!inputs) return inputs.error();
-  const auto selection = source.select(inputs->query, context);
+  const auto selection = source.select(inputs->values.query, context);
   if (!selection) return selection.error();
 
   Estimate expected;
@@ -66,9 +64,9 @@ Result<Estimate> estimate(std::string_view process, std::string_view inputs_json
   expected.buildings = selection->buildings;
   expected.triangles = selection->expected_triangles.value_or(static_cast<std::uint64_t>(
       std::llround(static_cast<double>(selection->buildings) * kTrianglesPerBuilding)));
-  expected.outputs =
-      expected_outputs(*find_process(process), *inputs, static_cast<double>(expected.buildings),
-                       static_cast<double>(expected.triangles));
+  expected.outputs = expected_outputs(*find_process(process), inputs->values,
+                                      static_cast<double>(expected.buildings),
+                                      static_cast<double>(expected.triangles));
   for (const auto& output : expected.outputs) expected.bytes += output.bytes;
   expected.crs = selection->crs.id;
   expected.problems = problems_of(*selection);

@@ -37,11 +37,9 @@ class Run {
         folder_(folder),
         context_(context) {}
 
-  Result<RunOutcome> execute(const std::string& canonical) {
+  Result<RunOutcome> execute(CanonicalInputs inputs) {
     const double start = context_.now();
-    auto inputs = read_inputs(canonical);
-    if (!inputs) return inputs.error();
-    inputs_ = std::move(*inputs);
+    inputs_ = std::move(inputs.values);
     if (inputs_.only_estimate)
       return fail(ErrorCode::InvalidArgument,
                   "input `mode` is \"estimate\", which makes no files; expected \"run\"");
@@ -56,7 +54,7 @@ class Run {
     RunReport& head = totals_.report();
     head.process = process_;
     head.version = version();
-    head.options_json = canonical;
+    head.options_json = std::move(inputs.json);
     head.crs = selection->crs;
     head.origin = selection->origin;
     head.source_crs = selection->source_crs;
@@ -267,9 +265,9 @@ class Run {
 
 Result<RunOutcome> run(std::string_view process, std::string_view inputs_json, CitySource& source,
                        const std::filesystem::path& folder, const RunContext& context) {
-  auto canonical = canonical_inputs(process, inputs_json);
-  if (!canonical) return canonical.error();
-  return Run(process, source, folder, context).execute(*canonical);
+  auto inputs = canonical_inputs(process, inputs_json);
+  if (!inputs) return inputs.error();
+  return Run(process, source, folder, context).execute(*std::move(inputs));
 }
 
 }  // namespace citymesh

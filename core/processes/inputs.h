@@ -13,8 +13,10 @@ namespace citymesh {
 
 /// The inputs of a process as values; fields are named like the inputs.
 struct Inputs {
+  /// `mode`: what would be processed is asked for, not the result.
   bool only_estimate = false;
   BuildingQuery query{};
+  double bbox_area_km2 = 0;  ///< near enough for a limit; 0 without a box
   std::vector<Lod> lod{};
   std::vector<std::string> formats{};
   bool block_on_failure = true;
@@ -28,8 +30,16 @@ struct Inputs {
   bool merge_parts = false;  ///< parts that touch or overlap become one body
 };
 
-/// Reads what canonical_inputs() has checked and completed. Errors: InvalidArgument for values that
-/// the table cannot judge (CRS names, empty boxes); Unimplemented for choices that are not built.
-Result<Inputs> read_inputs(std::string_view canonical_json);
+/// The same text and values: canonical inputs of the same meaning have the same text.
+struct CanonicalInputs {
+  std::string json{};  ///< complete_inputs()
+  Inputs values{};
+};
+
+/// Checks, completes and reads the inputs of one of processes(). Asks PROJ for every CRS named: 0.5
+/// ms each, so once per request. Errors: NotFound for an unknown process; those of
+/// complete_inputs(); InvalidArgument for values that the table cannot judge (CRS names, empty
+/// boxes); Unimplemented for choices that are not built.
+Result<CanonicalInputs> canonical_inputs(std::string_view process, std::string_view inputs_json);
 
 }  // namespace citymesh

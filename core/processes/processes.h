@@ -45,11 +45,9 @@ std::span<const ProcessSpec> processes();
 const ProcessSpec* find_process(std::string_view id);
 std::string process_ids();  ///< "export-for-simulation, heal, validate" for messages
 
-/// Checks `inputs_json` (a JSON object) against the table and completes it with the defaults, keys
-/// sorted. Errors: NotFound for an unknown process; InvalidArgument naming input, value and what is
-/// expected.
-Result<std::string> canonical_inputs(std::string_view process, std::string_view inputs_json);
-/// What of that the table alone can tell, for a process that need not be one of processes().
+/// Checks `inputs_json` (a JSON object) against the table of `process`, which need not be one of
+/// processes(), and completes it with the defaults, keys sorted. Errors: InvalidArgument naming
+/// input, value and what is expected; ResourceExhausted.
 Result<std::string> complete_inputs(const ProcessSpec& process, std::string_view inputs_json);
 
 }  // namespace citymesh

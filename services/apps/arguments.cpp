@@ -107,7 +107,7 @@ Result<std::string> bbox_json(std::string_view text) {
   return box->dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-Result<std::string> inputs_json(const ProcessSpec& process, const InputArguments& arguments) {
+Result<CanonicalInputs> inputs_of(const ProcessSpec& process, const InputArguments& arguments) {
   auto inputs = json::object();
   if (!arguments.formats.empty()) inputs["formats"] = arguments.formats;
   if (!arguments.bbox.empty()) {

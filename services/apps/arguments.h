@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/processes/inputs.h"
 #include "core/processes/processes.h"
 
 namespace citymesh {
@@ -20,8 +21,8 @@ struct InputArguments {
   std::vector<std::string> settings{};  ///< `name=value`
 };
 
-/// The inputs as canonical JSON. A value of `--set` is read by the kind of its input: lists by
+/// The inputs, checked and read. A value of `--set` is read by the kind of its input: lists by
 /// comma, numbers, true or false; JSON is taken as it is. Errors: those of canonical_inputs().
-Result<std::string> inputs_json(const ProcessSpec& process, const InputArguments& arguments);
+Result<CanonicalInputs> inputs_of(const ProcessSpec& process, const InputArguments& arguments);
 
 }  // namespace citymesh

@@ -123,7 +123,7 @@ int run_to_folder(const RunArguments& arguments) {
     return could_not_run(
         fail(ErrorCode::NotFound, fmt::format("process '{}' does not exist; available: {}",
                                               arguments.process, process_ids())));
-  const auto inputs = inputs_json(*process, arguments.inputs);
+  const auto inputs = inputs_of(*process, arguments.inputs);
   if (!inputs) return could_not_run(inputs.error());
   for (const auto& file : arguments.files) {  // before a folder is made for nothing
     std::error_code error;
@@ -132,9 +132,7 @@ int run_to_folder(const RunArguments& arguments) {
           fail(ErrorCode::NotFound, fmt::format("input '{}' does not exist", file.string())));
   }
 
-  const auto read = read_inputs(*inputs);
-  if (!read) return could_not_run(read.error());
-  if (read->only_estimate) return print_estimate(arguments, *inputs);
+  if (inputs->values.only_estimate) return print_estimate(arguments, inputs->json);
   const auto to_stdout = arguments.output.empty();
   if (to_stdout && arguments.process != kValidate)
     return could_not_run(
@@ -144,7 +142,7 @@ int run_to_folder(const RunArguments& arguments) {
   auto output = to_stdout ? OutputFolder::temporary()
                           : OutputFolder::open(arguments.output, arguments.overwrite);
   if (!output) return could_not_run(output.error());
-  const auto outcome = run_files(arguments, *inputs, output->staged(), stop);
+  const auto outcome = run_files(arguments, inputs->json, output->staged(), stop);
   if (!outcome) return could_not_run(outcome.error());
 
   print_warnings(outcome->report);

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/processes/inputs.h"
-#include "core/processes/processes.h"
 #include "core/source/source.h"
 #include "services/catalogue/catalogue.h"
 #include "services/catalogue/data_version.h"
@@ -26,16 +25,6 @@ SourceFactory within_limits(SourceFactory open, const ServeOptions& options) {
     auto source = open();
     if (!source) return source.error();
     return limited(*std::move(source), limits);
-  };
-}
-
-/// No box is larger than it may be.
-std::function<Result<void>(const std::string&, const std::string&)> area_check(double max_km2) {
-  if (max_km2 <= 0) return {};
-  return [max_km2](const std::string& process, const std::string& inputs_json) -> Result<void> {
-    if (find_process(process) == nullptr) return {};  // reads no buildings
-    const auto inputs = read_inputs(inputs_json);
-    return inputs ? check_area(inputs->query, max_km2) : inputs.error();
   };
 }
 
@@ -94,7 +83,10 @@ Result<ServedData> open_served_data(const ServeOptions& options, Log& log,
                                          : open_database(options);
   if (!opened) return opened.error();
   served.open = within_limits(*std::move(opened), options);
-  served.check_inputs = area_check(options.max_job_area_km2);
+  if (options.max_job_area_km2 > 0)  // no box is larger than it may be
+    served.check_inputs = [most = options.max_job_area_km2](const Inputs& inputs) {
+      return check_area(inputs, most);
+    };
   if (options.source.empty()) {
     served.name = options.data.string();
     served.version = [data = options.data] { return data_version(data); };

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/result.h"
+#include "core/processes/inputs.h"
 #include "services/config/serve_options.h"
 #include "services/telemetry/log.h"
 #include "services/worker/run_offered.h"
@@ -18,8 +19,7 @@ struct ServedData {
   /// Text that differs whenever what jobs read does; none: unknown.
   std::function<std::string()> version{};
   /// Refuses a box that is larger than it may be; empty: no limit.
-  std::function<Result<void>(const std::string& process, const std::string& inputs_json)>
-      check_inputs{};
+  std::function<Result<void>(const Inputs& inputs)> check_inputs{};
 };
 
 /// A folder is opened through its catalogue, which is brought up to date now rather than in the

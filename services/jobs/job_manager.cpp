@@ -19,8 +19,6 @@ using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 
 constexpr const char* kFormats = "formats";
-constexpr const char* kMode = "mode";
-constexpr const char* kEstimate = "estimate";
 
 template <class Specs>
 std::string ids(const Specs& specs) {
@@ -75,54 +73,55 @@ JobManager::JobManager(JobStore& jobs, TaskQueue& queue, ResultStore& results,
   });
 }
 
-/// The same with checked and completed inputs.
-Result<JobSpec> JobManager::checked(JobSpec spec) const {
+Result<AskedJob> JobManager::check(JobSpec spec) const {
   const auto* process = find_offered(spec.process);
   if (process == nullptr)
     return fail(ErrorCode::NotFound, fmt::format("process '{}' does not exist; available: {}",
                                                  spec.process, offered_ids()));
   if (auto checked = check_outputs(*process, spec); !checked) return checked.error();
   if (auto checked = check_subscriber(spec.subscriber); !checked) return checked.error();
+  if (!spec.outputs.empty()) {
+    // What is parsed there has passed the limits here.
+    if (auto complete = complete_inputs(*process, spec.inputs_json); !complete)
+      return complete.error();
+    spec.inputs_json = with_requested_formats(*process, spec);
+  }
   auto inputs = checked_inputs(spec.process, spec.inputs_json);
-  if (inputs && !spec.outputs.empty())  // what is parsed here has passed the limits already
-    inputs = checked_inputs(spec.process, with_requested_formats(*process, spec));
   if (!inputs) return inputs.error();
-  if (options_.check_inputs)
-    if (auto allowed = options_.check_inputs(spec.process, *inputs); !allowed)
-      return allowed.error();
-  spec.inputs_json = *std::move(inputs);
-  return spec;
+  spec.inputs_json = std::move(inputs->json);
+  if (inputs->of_city && options_.check_inputs)
+    if (auto allowed = options_.check_inputs(*inputs->of_city); !allowed) return allowed.error();
+  return AskedJob{std::move(spec), inputs->of_city && inputs->of_city->only_estimate};
 }
 
-bool JobManager::asks_for_estimate(const JobSpec& spec) {
-  const auto inputs = json::parse(spec.inputs_json, nullptr, false);
-  return inputs.is_object() && inputs.contains(kMode) && inputs[kMode] == kEstimate &&
-         find_process(spec.process) != nullptr;
-}
-
-Result<Estimate> JobManager::estimate(JobSpec spec) {
-  if (find_offered(spec.process) != nullptr && find_process(spec.process) == nullptr)
+Result<Estimate> JobManager::estimate(const AskedJob& asked) const {
+  const auto& process = asked.spec.process;
+  if (find_process(process) == nullptr)
     return fail(
         ErrorCode::Unimplemented,
-        fmt::format("process '{}' reads no buildings: there is nothing to estimate", spec.process));
-  auto asked = checked(std::move(spec));
-  if (!asked) return asked.error();
+        fmt::format("process '{}' reads no buildings: there is nothing to estimate", process));
   if (!options_.estimate)
     return fail(ErrorCode::Unimplemented, "this service does not estimate; submit a job instead");
-  return options_.estimate(asked->process, asked->inputs_json);
+  return options_.estimate(process, asked.spec.inputs_json);
 }
 
 Result<Job> JobManager::submit(JobSpec spec, std::string idempotency_key, std::string owner,
                                std::string trace_id) {
-  auto asked = checked(std::move(spec));
+  auto asked = check(std::move(spec));
   if (!asked) return asked.error();
-  if (asks_for_estimate(*asked))
+  return accept(*std::move(asked), std::move(idempotency_key), std::move(owner),
+                std::move(trace_id));
+}
+
+Result<Job> JobManager::accept(AskedJob asked, std::string idempotency_key, std::string owner,
+                               std::string trace_id) {
+  if (asked.only_estimate)
     return fail(ErrorCode::InvalidArgument,
                 "input `mode` is \"estimate\", which makes no job; expected \"run\"");
 
   Job job;
   job.id = new_job_id();
-  job.spec = *std::move(asked);
+  job.spec = std::move(asked.spec);
   job.message = "queued";
   job.created = job.updated = now_ms();
   job.idempotency_key = std::move(idempotency_key);

@@ -10,6 +10,7 @@
 
 #include "core/base/result.h"
 #include "core/pipeline/estimate.h"
+#include "core/processes/inputs.h"
 #include "services/jobs/job.h"
 #include "services/jobs/stores.h"
 
@@ -20,9 +21,8 @@ struct JobManagerOptions {
   std::uint32_t max_open_jobs = 1000;
   /// The same for each owner; jobs of nobody in particular do not count. 0: no limit of its own.
   std::uint32_t max_open_jobs_per_owner = 0;
-  /// What checked inputs may not ask of this service, whatever the process allows; empty: nothing.
-  std::function<Result<void>(const std::string& process, const std::string& inputs_json)>
-      check_inputs{};
+  /// What inputs may not ask of this service, whatever the process allows; empty: nothing.
+  std::function<Result<void>(const Inputs& inputs)> check_inputs{};
   /// What checked inputs would process; empty: this service does not estimate.
   std::function<Result<Estimate>(const std::string& process, const std::string& inputs_json)>
       estimate{};
@@ -34,6 +34,12 @@ struct JobManagerOptions {
   TimeMs poll_ms = 250;
 };
 
+/// What somebody asked for, checked.
+struct AskedJob {
+  JobSpec spec{};
+  bool only_estimate = false;  ///< the input `mode` says so: no job, but estimate()
+};
+
 /// The verbs of the service. REST and gRPC translate to and from these and nothing else.
 /// Thread-safe.
 class JobManager {
@@ -41,20 +47,24 @@ class JobManager {
   JobManager(JobStore& jobs, TaskQueue& queue, ResultStore& results,
              JobManagerOptions options = {});
 
-  /// Checks process and inputs (checked_inputs), stores the job and queues it. Errors: NotFound
-  /// for an unknown process, InvalidArgument for inputs, outputs or subscribers, ResourceExhausted.
-  /// Requested outputs that are formats are added to the input `formats`, or are the formats where
-  /// the request states none.
+  /// Checks process, outputs, subscriber and inputs (checked_inputs). Errors: NotFound for an
+  /// unknown process, InvalidArgument, Unimplemented. Requested outputs that are formats are added
+  /// to the input `formats`, or are the formats where the request states none.
+  Result<AskedJob> check(JobSpec spec) const;
+
+  /// Stores the job and queues it. Errors: InvalidArgument when only an estimate was asked for,
+  /// ResourceExhausted.
   /// With an idempotency key a repeated request of the same owner gets the job of the first one,
   /// also when that has ended. AlreadyExists when the first one asked for something else. The key
   /// is free again once the job is forgotten.
+  Result<Job> accept(AskedJob asked, std::string idempotency_key = {}, std::string owner = {},
+                     std::string trace_id = {});
+  /// check() and accept().
   Result<Job> submit(JobSpec spec, std::string idempotency_key = {}, std::string owner = {},
                      std::string trace_id = {});
   /// What a job of this kind would process, without making one: the input `mode` may say so or not.
-  /// Errors: those of submit() for process and inputs, those of the source, Unimplemented.
-  Result<Estimate> estimate(JobSpec spec);
-  /// Whether `mode` asks for an estimate rather than a job.
-  static bool asks_for_estimate(const JobSpec& spec);
+  /// Errors: those of the source, Unimplemented.
+  Result<Estimate> estimate(const AskedJob& asked) const;
   Result<Job> get(const std::string& id);
   Result<std::vector<Job>> list(const JobFilter& filter);
   Result<std::uint64_t> count(const JobFilter& filter);
@@ -88,7 +98,6 @@ class JobManager {
   Result<Job> wait_until(const std::string& id, TimeMs wait_ms,
                          const std::function<bool(const Job&)>& enough);
   Result<Job> repeated(const Job& job);
-  Result<JobSpec> checked(JobSpec spec) const;
   Result<void> check_subscriber(const Subscriber& subscriber) const;
   Result<void> take_room_for(const Job& job);
   void leave_room_of(const Job& job);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "core/write/write.h"
@@ -40,13 +41,19 @@ std::string offered_ids() {
   return text;
 }
 
-Result<std::string> checked_inputs(std::string_view process, std::string_view inputs_json) {
+Result<CheckedInputs> checked_inputs(std::string_view process, std::string_view inputs_json) {
   const auto* spec = find_offered(process);
   if (spec == nullptr)
     return fail(ErrorCode::NotFound,
                 fmt::format("process '{}' does not exist; available: {}", process, offered_ids()));
-  return spec->id == kEcho ? checked_echo_inputs(inputs_json)
-                           : canonical_inputs(process, inputs_json);
+  if (spec->id == kEcho) {
+    auto json = checked_echo_inputs(inputs_json);
+    if (!json) return json.error();
+    return CheckedInputs{*std::move(json), std::nullopt};
+  }
+  auto inputs = canonical_inputs(process, inputs_json);
+  if (!inputs) return inputs.error();
+  return CheckedInputs{std::move(inputs->json), std::move(inputs->values)};
 }
 
 bool is_default_output(const ProcessSpec& process, const OutputSpec& output) {

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "core/base/result.h"
+#include "core/processes/inputs.h"
 #include "core/processes/processes.h"
 
 namespace citymesh {
@@ -16,8 +18,13 @@ std::span<const ProcessSpec> offered_processes();
 const ProcessSpec* find_offered(std::string_view id);
 std::string offered_ids();  ///< "export-for-simulation, heal, validate, echo" for messages
 
+struct CheckedInputs {
+  std::string json{};               ///< complete_inputs() of core/processes
+  std::optional<Inputs> of_city{};  ///< the same as values; none of a process that reads no city
+};
+
 /// As canonical_inputs() of core/processes, for every process offered.
-Result<std::string> checked_inputs(std::string_view process, std::string_view inputs_json);
+Result<CheckedInputs> checked_inputs(std::string_view process, std::string_view inputs_json);
 
 /// Whether a request that names no outputs gets this one: the report and the formats; of a process
 /// without a report everything.

@@ -80,7 +80,7 @@ class Api {
   Response process_list(const Call& call) const;
   Response process(const Call& call) const;
   Response execute(const Call& call) const;
-  Response estimate(const Call& call, JobSpec spec) const;
+  Response estimate(const Call& call, const AskedJob& asked) const;
   Response job_list(const Call& call) const;
   Response job(const Call& call) const;
   Response dismiss(const Call& call) const;

@@ -74,8 +74,8 @@ Response accepted(std::string_view base, const Job& job, const std::string& pref
 
 }  // namespace
 
-Response Api::estimate(const Call& call, JobSpec spec) const {
-  const auto expected = jobs_.estimate(std::move(spec));
+Response Api::estimate(const Call& call, const AskedJob& asked) const {
+  const auto expected = jobs_.estimate(asked);
   if (!expected)
     return problem_response(problem_kind(expected.error().code), expected.error().message,
                             call.accept);
@@ -95,12 +95,15 @@ Response Api::execute(const Call& call) const {
   auto spec = decode_execute(*process, call.request.body);
   if (!spec)
     return problem_response(problem_kind(spec.error().code), spec.error().message, call.accept);
-  if (JobManager::asks_for_estimate(*spec)) return estimate(call, *std::move(spec));
   spec->subscriber.base = call.base;
+  auto asked = jobs_.check(*std::move(spec));
+  if (!asked)
+    return problem_response(problem_kind(asked.error().code), asked.error().message, call.accept);
+  if (asked->only_estimate) return estimate(call, *asked);
   const auto key = idempotency_key(call.request.headers);
   if (!key)
     return problem_response(problem_kind(key.error().code), key.error().message, call.accept);
-  const auto job = jobs_.submit(*std::move(spec), *key, call.client.name, call.trace_id);
+  const auto job = jobs_.accept(*std::move(asked), *key, call.client.name, call.trace_id);
   if (!job)
     return problem_response(job.error().code == ErrorCode::AlreadyExists
                                 ? problems::kIdempotencyKeyUsed

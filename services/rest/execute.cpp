@@ -190,7 +190,7 @@ Result<Subscriber> decode_subscriber(const json& body) {
 /// What `outputs` stands for when it is absent: every default output, of the formats those wanted.
 Result<std::map<std::string, Transmission>> all_outputs(const ProcessSpec& process,
                                                         const JobSpec& spec) {
-  auto inputs = checked_inputs(spec.process, spec.inputs_json);
+  auto inputs = complete_inputs(process, spec.inputs_json);
   if (!inputs) return inputs.error();
   const auto formats = json::parse(*inputs, nullptr, false).value("formats", json::array());
   std::map<std::string, Transmission> all;

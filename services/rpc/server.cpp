@@ -148,7 +148,9 @@ class JobsService final : public v1::Jobs::Service {
   grpc::Status Estimate(grpc::ServerContext* context, const v1::SubmitRequest* request,
                         v1::EstimateReply* answer) override {
     return served(*context, "Estimate", Role::Submit, [&](const Caller&) {
-      const auto expected = jobs_.estimate(to_spec(*request));
+      const auto asked = jobs_.check(to_spec(*request));
+      if (!asked) return to_status(asked.error());
+      const auto expected = jobs_.estimate(*asked);
       if (!expected) return to_status(expected.error());
       *answer = to_proto(*expected);
       return grpc::Status::OK;

@@ -2,27 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
+#include <utility>
 
 namespace citymesh {
 namespace {
-
-constexpr double kDegree_km = 111.2;  // of a great circle
-constexpr double kKm2_m2 = 1e6;
-
-/// Near enough for a limit; nothing when the CRS is not known, which the source then says.
-std::optional<double> area_km2(const RequestBox& box) {
-  const auto facts = describe_crs(box.crs);
-  if (!facts) return std::nullopt;
-  const double width = std::abs(box.max_x - box.min_x);
-  const double height = std::abs(box.max_y - box.min_y);
-  if (!facts->geographic)
-    return width * height * facts->horizontal_unit_m * facts->horizontal_unit_m / kKm2_m2;
-  const double middle = (box.min_y + box.max_y) / 2 * std::numbers::pi / 180;
-  return width * height * kDegree_km * kDegree_km * std::max(0.0, std::cos(middle));
-}
 
 std::uint64_t points_of(const Building& building) {
   std::uint64_t points = 0;
@@ -72,13 +55,11 @@ class LimitedSource final : public CitySource {
 
 }  // namespace
 
-Result<void> check_area(const BuildingQuery& query, double max_km2) {
-  if (!query.bbox) return {};
-  if (const auto area = area_km2(*query.bbox); area && *area > max_km2)
-    return fail(ErrorCode::InvalidArgument,
-                fmt::format("input `bbox` covers {:.4g} km², at most {:.4g} km² may be in one job",
-                            *area, max_km2));
-  return {};
+Result<void> check_area(const Inputs& inputs, double max_km2) {
+  if (inputs.bbox_area_km2 <= max_km2) return {};
+  return fail(ErrorCode::InvalidArgument,
+              fmt::format("input `bbox` covers {:.4g} km², at most {:.4g} km² may be in one job",
+                          inputs.bbox_area_km2, max_km2));
 }
 
 std::unique_ptr<CitySource> limited(std::unique_ptr<CitySource> source, const JobLimits& limits) {

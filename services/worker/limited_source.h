@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/processes/inputs.h"
 #include "core/source/source.h"
 
 namespace citymesh {
@@ -13,12 +14,12 @@ struct JobLimits {
   std::uint64_t points = 0;  ///< of all buildings read, parts and installations included
 };
 
+/// Whether the box is small enough: known before a source is asked. Errors: InvalidArgument, with
+/// the area of the box.
+Result<void> check_area(const Inputs& inputs, double max_km2);
+
 /// The source within limits: a selection or a reading that exceeds one ends with ResourceExhausted,
 /// which names the limit and how much it was.
-/// Whether the box of a query is small enough: known before a source is asked. Errors:
-/// InvalidArgument, with the area of the box.
-Result<void> check_area(const BuildingQuery& query, double max_km2);
-
 std::unique_ptr<CitySource> limited(std::unique_ptr<CitySource> source, const JobLimits& limits);
 
 }  // namespace citymesh

@@ -35,13 +35,13 @@ TEST(Bbox, RefusesWhatIsNoBox) {
 }
 
 TEST(Inputs, TakeTheirTypeFromTheTable) {
-  const auto inputs = inputs_json(
+  const auto inputs = inputs_of(
       export_process(), {.formats = {"stl", "obj"},
                          .bbox = "1,2,3,4@EPSG:25833",
                          .settings = {"lod=2,1", "snap_tolerance_m=0.002", "on_failure=drop",
                                       R"(object_ids=["a,b","c"])", "unite_neighbours=false"}});
   ASSERT_TRUE(inputs) << inputs.error().message;
-  EXPECT_THAT(*inputs,
+  EXPECT_THAT(inputs->json,
               AllOf(HasSubstr(R"("formats":["stl","obj"])"), HasSubstr(R"("lod":["2","1"])"),
                     HasSubstr(R"("snap_tolerance_m":0.002)"),
                     HasSubstr(R"("object_ids":["a,b","c"])"), HasSubstr(R"("on_failure":"drop")")));
@@ -50,7 +50,7 @@ TEST(Inputs, TakeTheirTypeFromTheTable) {
 TEST(Inputs, SayWhatIsWrongWithASetting) {
   const auto message = [](std::vector<std::string> settings) {
     const auto inputs =
-        inputs_json(export_process(), {.formats = {}, .bbox = {}, .settings = settings});
+        inputs_of(export_process(), {.formats = {}, .bbox = {}, .settings = settings});
     return inputs ? std::string("accepted") : inputs.error().message;
   };
   EXPECT_THAT(message({"lod"}), HasSubstr("name=value"));

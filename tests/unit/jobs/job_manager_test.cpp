@@ -55,14 +55,13 @@ class JobManagerTest : public testing::Test {
 };
 
 TEST_F(JobManagerTest, WhatTheServiceDoesNotTakeIsRefusedBeforeThereIsAJob) {
-  JobManager jobs(
-      *store_, *store_, *results_,
-      {.check_inputs = [](const std::string& process, const std::string& inputs) -> Result<void> {
-        EXPECT_EQ(process, "validate");
-        EXPECT_THAT(inputs, HasSubstr("bbox_rule")) << "inputs are completed";
-        return fail(ErrorCode::InvalidArgument, "the box is too large");
-      }});
-  const auto refused = jobs.submit({.process = "validate"});
+  JobManager jobs(*store_, *store_, *results_,
+                  {.check_inputs = [](const Inputs& inputs) -> Result<void> {
+                    EXPECT_EQ(inputs.query.object_ids, std::vector<std::string>{"a"});
+                    return fail(ErrorCode::InvalidArgument, "the box is too large");
+                  }});
+  const auto refused =
+      jobs.submit({.process = "validate", .inputs_json = R"({"object_ids":["a"]})"});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().message, "the box is too large");
   EXPECT_EQ(*jobs.count({}), 0u);
@@ -77,18 +76,22 @@ TEST_F(JobManagerTest, AnEstimateMakesNoJob) {
                     return Result<Estimate>(expected);
                   }});
   for (const auto* inputs : {R"({"mode":"estimate"})", "{}"}) {
-    const auto expected = jobs.estimate({.process = "heal", .inputs_json = inputs});
+    const auto asked = jobs.check({.process = "heal", .inputs_json = inputs});
+    ASSERT_TRUE(asked) << asked.error().message;
+    EXPECT_EQ(asked->only_estimate, std::string_view(inputs).size() > 2);
+    const auto expected = jobs.estimate(*asked);
     ASSERT_TRUE(expected) << expected.error().message;
     EXPECT_EQ(expected->buildings, 12u);
   }
   const auto job = jobs.submit({.process = "heal", .inputs_json = R"({"mode":"estimate"})"});
   ASSERT_FALSE(job);
   EXPECT_EQ(job.error().code, ErrorCode::InvalidArgument);
-  EXPECT_EQ(jobs.estimate({.process = "heal", .inputs_json = R"({"mode":7})"}).error().code,
+  EXPECT_EQ(jobs.check({.process = "heal", .inputs_json = R"({"mode":7})"}).error().code,
             ErrorCode::InvalidArgument);
-  EXPECT_EQ(jobs.estimate({.process = "fly"}).error().code, ErrorCode::NotFound);
-  EXPECT_EQ(jobs.estimate({.process = "echo"}).error().code, ErrorCode::Unimplemented);
-  EXPECT_EQ(jobs_.estimate({.process = "heal"}).error().code, ErrorCode::Unimplemented);
+  EXPECT_EQ(jobs.check({.process = "fly"}).error().code, ErrorCode::NotFound);
+  EXPECT_EQ(jobs.estimate(*jobs.check({.process = "echo"})).error().code, ErrorCode::Unimplemented);
+  EXPECT_EQ(jobs_.estimate(*jobs_.check({.process = "heal"})).error().code,
+            ErrorCode::Unimplemented);
   EXPECT_EQ(*jobs.count({}), 0u);
 }
 

@@ -105,8 +105,8 @@ TEST_F(Echo, ChecksTheKindOfItsInputs) {
 TEST_F(Echo, CheckedInputsStayAsTheyAre) {
   const auto once = checked_inputs("echo", R"({"text":"a","list":"one"})");
   ASSERT_TRUE(once);
-  EXPECT_EQ(*checked_inputs("echo", *once), *once);
-  EXPECT_EQ(json::parse(*once)["list"], json::array({"one"}));
+  EXPECT_EQ(checked_inputs("echo", once->json)->json, once->json);
+  EXPECT_EQ(json::parse(once->json)["list"], json::array({"one"}));
 }
 
 TEST_F(Echo, ReportsItsPauseAndEndsItWhenStopped) {

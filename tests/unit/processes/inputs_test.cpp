@@ -16,14 +16,14 @@ constexpr std::string_view kExport = "export-for-simulation";
 
 Error refused(std::string_view json) {
   const auto canonical = canonical_inputs(kExport, json);
-  EXPECT_FALSE(canonical) << *canonical;
+  EXPECT_FALSE(canonical) << canonical->json;
   return canonical ? Error{} : canonical.error();
 }
 
 TEST(Inputs, DefaultsCompleteWhatIsNotGiven) {
   const auto canonical = canonical_inputs(kExport, "");
   ASSERT_TRUE(canonical);
-  const auto json = nlohmann::json::parse(*canonical);
+  const auto json = nlohmann::json::parse(canonical->json);
   EXPECT_EQ(json["formats"], nlohmann::json::array({"obj"}));
   EXPECT_EQ(json["lod"], nlohmann::json::array({"2", "3", "1", "0"}));
   EXPECT_EQ(json["on_failure"], "block");
@@ -36,7 +36,7 @@ TEST(Inputs, DefaultsCompleteWhatIsNotGiven) {
 TEST(Inputs, HealGivesACityModelBackUnlessAskedForMore) {
   const auto canonical = canonical_inputs("heal", "");
   ASSERT_TRUE(canonical) << canonical.error().message;
-  const auto json = nlohmann::json::parse(*canonical);
+  const auto json = nlohmann::json::parse(canonical->json);
   EXPECT_EQ(json["formats"], nlohmann::json::array({"cityjson"}));
   for (const OptionSpec& option : find_process("heal")->inputs)
     EXPECT_TRUE(json.contains(std::string(option.name))) << option.name;
@@ -53,14 +53,13 @@ TEST(Inputs, TheLimitsOfHealingAreRead) {
         "planarity_tolerance_m":0.02,"max_displacement_m":0.3,"max_hole_area_m2":25,
         "parts":"keep","on_failure":"drop"})");
     ASSERT_TRUE(canonical) << canonical.error().message;
-    const auto inputs = read_inputs(*canonical);
-    ASSERT_TRUE(inputs);
-    EXPECT_EQ(inputs->snap_tolerance_m, 0.002);
-    EXPECT_EQ(inputs->planarity_tolerance_m, 0.02);
-    EXPECT_EQ(inputs->max_displacement_m, 0.3);
-    EXPECT_EQ(inputs->max_hole_area_m2, 25);
-    EXPECT_FALSE(inputs->merge_parts);
-    EXPECT_FALSE(inputs->block_on_failure);
+    const auto& inputs = canonical->values;
+    EXPECT_EQ(inputs.snap_tolerance_m, 0.002);
+    EXPECT_EQ(inputs.planarity_tolerance_m, 0.02);
+    EXPECT_EQ(inputs.max_displacement_m, 0.3);
+    EXPECT_EQ(inputs.max_hole_area_m2, 25);
+    EXPECT_FALSE(inputs.merge_parts);
+    EXPECT_FALSE(inputs.block_on_failure);
   }
   EXPECT_THAT(refused(R"({"max_hole_area_m2":-1})").message, HasSubstr("0 to 1000000"));
   EXPECT_THAT(refused(R"({"parts":"split"})").message, HasSubstr("keep, merge"));
@@ -70,9 +69,9 @@ TEST(Inputs, CanonicalFormIsAFixedPoint) {
   const auto once =
       canonical_inputs(kExport, R"({"formats":"stl","bbox":{"bbox":[13.3,52.5,13.4,52.6]}})");
   ASSERT_TRUE(once);
-  const auto twice = canonical_inputs(kExport, *once);
+  const auto twice = canonical_inputs(kExport, once->json);
   ASSERT_TRUE(twice);
-  EXPECT_EQ(*once, *twice);
+  EXPECT_EQ(once->json, twice->json);
 }
 
 TEST(Inputs, TheTableOfFormatsIsTheTableOfWriters) {
@@ -87,10 +86,9 @@ TEST(Inputs, TheTableOfFormatsIsTheTableOfWriters) {
 TEST(Inputs, ABoxIsCrs84UnlessItSaysSo) {
   const auto canonical = canonical_inputs(kExport, R"({"bbox":{"bbox":[13.3,52.5,13.4,52.6]}})");
   ASSERT_TRUE(canonical);
-  const auto inputs = read_inputs(*canonical);
-  ASSERT_TRUE(inputs);
-  EXPECT_EQ(inputs->query.bbox->crs.id, "OGC:CRS84");
-  EXPECT_EQ(inputs->query.bbox->min_x, 13.3);
+  const auto& inputs = canonical->values;
+  EXPECT_EQ(inputs.query.bbox->crs.id, "OGC:CRS84");
+  EXPECT_EQ(inputs.query.bbox->min_x, 13.3);
 }
 
 TEST(Inputs, AGeographicEpsgBoxIsLatitudeFirst) {
@@ -98,19 +96,34 @@ TEST(Inputs, AGeographicEpsgBoxIsLatitudeFirst) {
       kExport,
       R"({"bbox":{"bbox":[52.5,13.3,52.6,13.4],"crs":"http://www.opengis.net/def/crs/EPSG/0/4326"}})");
   ASSERT_TRUE(canonical);
-  const auto inputs = read_inputs(*canonical);
-  ASSERT_TRUE(inputs);
-  EXPECT_EQ(inputs->query.bbox->min_x, 13.3);
-  EXPECT_EQ(inputs->query.bbox->max_y, 52.6);
+  const auto& inputs = canonical->values;
+  EXPECT_EQ(inputs.query.bbox->min_x, 13.3);
+  EXPECT_EQ(inputs.query.bbox->max_y, 52.6);
 }
 
 TEST(Inputs, ASixNumberBoxLimitsTheHeight) {
   const auto canonical =
       canonical_inputs(kExport, R"({"bbox":{"bbox":[1,2,3,4,5,6],"crs":"EPSG:25833"}})");
   ASSERT_TRUE(canonical);
-  const auto inputs = read_inputs(*canonical);
-  ASSERT_TRUE(inputs && inputs->query.bbox->z_range_m);
-  EXPECT_EQ((*inputs->query.bbox->z_range_m)[1], 6);
+  const auto& inputs = canonical->values;
+  ASSERT_TRUE(inputs.query.bbox->z_range_m);
+  EXPECT_EQ((*inputs.query.bbox->z_range_m)[1], 6);
+}
+
+TEST(Inputs, ABoxIsAsLargeAsItIsOnTheGround) {
+  const auto area_km2 = [](const std::string& numbers, const std::string& crs) {
+    const auto inputs =
+        canonical_inputs(kExport, R"({"bbox":{"bbox":)" + numbers + R"(,"crs":")" + crs + "\"}}");
+    EXPECT_TRUE(inputs) << inputs.error().message;
+    return inputs ? inputs->values.bbox_area_km2 : -1;
+  };
+  // A tenth of a degree at 60° north: 11.1 km by 5.6 km.
+  EXPECT_NEAR(area_km2("[10.0, 60.0, 10.1, 60.1]", "OGC:CRS84"), 61.7, 0.2);
+  EXPECT_NEAR(area_km2("[10.0, 0.0, 10.1, 0.1]", "OGC:CRS84"), 123.7, 0.1);
+  EXPECT_NEAR(area_km2("[60.0, 10.0, 60.1, 10.1]", "EPSG:4326"), 61.7, 0.2) << "latitude first";
+  EXPECT_NEAR(area_km2("[390000, 5800000, 399000, 5809000]", "EPSG:25833"), 81, 1e-9);
+  EXPECT_NEAR(area_km2("[0, 0, 30000, 30000]", "EPSG:2263"), 83.6, 0.1) << "feet";
+  EXPECT_EQ(canonical_inputs(kExport, "{}")->values.bbox_area_km2, 0);
 }
 
 TEST(Inputs, WrongValuesAreNamedWithWhatIsExpected) {
