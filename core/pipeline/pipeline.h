@@ -28,10 +28,14 @@ struct RunOutcome {
   std::uint64_t invalid_buildings = 0;  ///< of `validate`: buildings with defects
 };
 
+class BodySink;
+
 /// Runs a process on a source and writes its files to `folder`, which must exist and be empty.
-/// Errors: those of the source; Cancelled when stopped; DataLoss naming body, gate and format when
-/// a finished file fails its gates; Unavailable when the disk fails.
+/// `write_back` takes the bodies of a run that asks for it. Errors: those of the source; Cancelled
+/// when stopped; DataLoss naming body, gate and format when a finished file fails its gates;
+/// Unavailable when the disk fails.
 Result<RunOutcome> run(std::string_view process, std::string_view inputs_json, CitySource& source,
-                       const std::filesystem::path& folder, const RunContext& context);
+                       const std::filesystem::path& folder, const RunContext& context,
+                       BodySink* write_back = nullptr);
 
 }  // namespace citymesh

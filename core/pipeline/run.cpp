@@ -7,6 +7,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/version.h"
+#include "core/pipeline/body_sink.h"
 #include "core/pipeline/manifest.h"
 #include "core/pipeline/names.h"
 #include "core/pipeline/pipeline.h"
@@ -29,13 +30,14 @@ Error cancelled() { return fail(ErrorCode::Cancelled, "stopped before the end");
 class Run {
  public:
   Run(std::string_view process, CitySource& source, const std::filesystem::path& folder,
-      const RunContext& context)
+      const RunContext& context, BodySink* write_back)
       : process_(process),
         exporting_(process != "validate"),
         shows_errors_(process == "validate" || process == "heal"),
         source_(source),
         folder_(folder),
-        context_(context) {}
+        context_(context),
+        write_back_(write_back) {}
 
   Result<RunOutcome> execute(CanonicalInputs inputs) {
     const double start = context_.now();
@@ -43,6 +45,13 @@ class Run {
     if (inputs_.only_estimate)
       return fail(ErrorCode::InvalidArgument,
                   "input `mode` is \"estimate\", which makes no files; expected \"run\"");
+    if (!inputs_.write_back) {
+      write_back_ = nullptr;
+    } else if (write_back_ == nullptr) {
+      return fail(ErrorCode::InvalidArgument,
+                  "input `write_back` is true, but there is no database to write to: it needs "
+                  "`citymesh serve` with --write_back_schema");
+    }
     if (inputs_.keep_installations) totals_.keep_installations();
     if (!exporting_) validation_.emplace(inputs_);
 
@@ -79,6 +88,8 @@ class Run {
         if (!writer) return writer.error();
         formats_.push_back({format, std::move(*writer)});
       }
+    if (write_back_)
+      if (auto begun = write_back_->begin(scene); !begun) return begun;
     auto report = ReportWriter::create(folder_, scene);
     if (!report) return report.error();
     report_ = std::move(*report);
@@ -152,6 +163,8 @@ class Run {
         manifest_.add(*bodies, building.fingerprints);
         for (const OpenFormat& open : formats_)
           if (auto added = open.writer->add(*bodies); !added) return added.error();
+        if (write_back_)
+          if (auto added = write_back_->add(*bodies); !added) return added;
       }
       if (!exporting_ && has_defects(building.report)) ++invalid_;
       if (auto added = report_->add(building.report, bodies, building.sources); !added)
@@ -189,6 +202,12 @@ class Run {
       if (!checked) return checked.error();
     }
     time("gates", start);
+    if (!write_back_) return {};
+    start = context_.now();
+    auto warnings = write_back_->finish();
+    if (!warnings) return warnings.error();
+    write_back_warnings_ = *std::move(warnings);
+    time("write_back", start);
     return {};
   }
 
@@ -205,6 +224,8 @@ class Run {
     outcome.report.inputs = selection.inputs;
     outcome.report.warnings.insert(outcome.report.warnings.begin(), selection.warnings.begin(),
                                    selection.warnings.end());
+    outcome.report.warnings.insert(outcome.report.warnings.end(), write_back_warnings_.begin(),
+                                   write_back_warnings_.end());
     for (const std::string& id : selection.missing_ids)
       outcome.report.warnings.push_back(fmt::format("object `{}` is in none of the inputs", id));
     if (outcome.report.counts.requested == 0)
@@ -249,6 +270,7 @@ class Run {
   CitySource& source_;
   const std::filesystem::path& folder_;
   const RunContext& context_;
+  BodySink* write_back_;  ///< none: not asked for
   Inputs inputs_;
   std::vector<OpenFormat> formats_;
   std::optional<Validation> validation_;  ///< instead of healing
@@ -256,6 +278,7 @@ class Run {
   std::optional<Names> names_;
   std::unordered_set<std::string> seen_;
   Manifest manifest_;
+  std::vector<std::string> write_back_warnings_{};
   Totals totals_;
   std::map<std::string, double> stages_s_;
   std::uint64_t total_ = 0, done_ = 0, invalid_ = 0;
@@ -264,10 +287,11 @@ class Run {
 }  // namespace
 
 Result<RunOutcome> run(std::string_view process, std::string_view inputs_json, CitySource& source,
-                       const std::filesystem::path& folder, const RunContext& context) {
+                       const std::filesystem::path& folder, const RunContext& context,
+                       BodySink* write_back) {
   auto inputs = canonical_inputs(process, inputs_json);
   if (!inputs) return inputs.error();
-  return Run(process, source, folder, context).execute(*std::move(inputs));
+  return Run(process, source, folder, context, write_back).execute(*std::move(inputs));
 }
 
 }  // namespace citymesh

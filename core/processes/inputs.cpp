@@ -107,6 +107,7 @@ Result<Inputs> read_inputs(std::string_view canonical_json) {
   if (given.value("unite_neighbours", false))
     return fail(ErrorCode::Unimplemented,
                 "input `unite_neighbours` is true: uniting is not built, expected false");
+  inputs.write_back = given.value("write_back", false);
   inputs.keep_installations = given.value("installations", "drop") == "keep";
   return inputs;
 }

@@ -27,6 +27,7 @@ struct Inputs {
   double max_displacement_m = 0.1;
   double max_hole_area_m2 = 10000;
   double gap_threshold_m = 0.1;
+  bool write_back = false;   ///< to the database, besides the files
   bool merge_parts = false;  ///< parts that touch or overlap become one body
 };
 

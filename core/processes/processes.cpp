@@ -102,6 +102,12 @@ constexpr OptionSpec kGap{"gap_threshold_m",
                           0.0,
                           10.0};
 
+constexpr OptionSpec kWriteBack{
+    "write_back", OptionKind::Boolean, "false",
+    "Whether the result also goes into the database, into a schema of its own beside the one that "
+    "was read, with the same gml_id and the id of the job as lineage. Needs a service that was "
+    "started for it and the right to write back."};
+
 constexpr OptionSpec kMode{
     "mode", OptionKind::Text, "\"run\"",
     "run, or estimate: how many buildings that is, how large the results will "
@@ -134,11 +140,11 @@ struct Table {
                    kLod,       kInstallation, format("[\"cityjson\"]"),
                    kFailure,   kPart,         kSnap,
                    kPlanarity, kDisplacement, kHole,
-                   kMode};
+                   kWriteBack, kMode};
     export_inputs = {
-        kBbox,  kBboxRule,     kObjectIds,          kCrs,          kSourceCrs, kAxisOrder,
-        kLod,   kInstallation, format("[\"obj\"]"), kFailure,      kPart,      kUnite,
-        kPatch, kSnap,         kPlanarity,          kDisplacement, kHole,      kMode};
+        kBbox,         kBboxRule,           kObjectIds, kCrs,       kSourceCrs, kAxisOrder, kLod,
+        kInstallation, format("[\"obj\"]"), kFailure,   kPart,      kUnite,     kPatch,     kSnap,
+        kPlanarity,    kDisplacement,       kHole,      kWriteBack, kMode};
     processes = {
         ProcessSpec{"export-for-simulation", "Export for simulation",
                     "Selects buildings by box or id, heals them, and delivers closed, 2-manifold "

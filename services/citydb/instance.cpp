@@ -26,11 +26,12 @@ ObjectClass class_of(std::string_view name) {
   return {.surface = surface_type_from(plain)};
 }
 
-Error no_citydb(const std::string& schema, std::string_view what) {
+Error no_citydb(const postgres::Connection& connection, const std::string& schema,
+                std::string_view what) {
   return fail(ErrorCode::FailedPrecondition,
               fmt::format("schema '{}' of the database {}, expected a 3DCityDB of version 4 or 5; "
-                          "--source_schema names another one",
-                          schema, what));
+                          "{} names another one",
+                          schema, what, connection.purpose().schema_flag));
 }
 
 }  // namespace
@@ -53,8 +54,9 @@ Result<Instance> look_at(postgres::Connection& connection, const std::string& sc
       stop);
   if (!probe) return probe.error();
   const bool v4 = probe->integer(0, 0) != 0, v5 = probe->integer(0, 1) != 0;
-  if (probe->integer(0, 3) == 0) return no_citydb(schema, "has no PostGIS in reach");
-  if (!v4 && !v5) return no_citydb(schema, "has neither table surface_geometry nor geometry_data");
+  if (probe->integer(0, 3) == 0) return no_citydb(connection, schema, "has no PostGIS in reach");
+  if (!v4 && !v5)
+    return no_citydb(connection, schema, "has neither table surface_geometry nor geometry_data");
 
   Instance instance;
   instance.major = v5 ? 5 : 4;
@@ -73,16 +75,17 @@ Result<Instance> look_at(postgres::Connection& connection, const std::string& sc
                                   : "SELECT srid, gml_srs_name FROM database_srs LIMIT 1"},
                      stop);
   if (!srs) return srs.error();
-  if (srs->size() != 1) return no_citydb(schema, "states no CRS in database_srs");
+  if (srs->size() != 1) return no_citydb(connection, schema, "states no CRS in database_srs");
   instance.srid = static_cast<int>(srs->integer(0, 0));
   instance.srs_name = srs->text(0, 1);
   if (const auto named = parse_crs(instance.srs_name); !named || !named->known())
     instance.srs_name = fmt::format("EPSG:{}", instance.srid);
   if (const auto facts = describe_crs({fmt::format("EPSG:{}", instance.srid)});
       !facts && !describe_crs(*parse_crs(instance.srs_name)))
-    return no_citydb(schema, fmt::format("has SRID {} and CRS '{}' in database_srs, which nobody "
-                                         "knows: correct that table",
-                                         instance.srid, srs->text(0, 1)));
+    return no_citydb(connection, schema,
+                     fmt::format("has SRID {} and CRS '{}' in database_srs, which nobody "
+                                 "knows: correct that table",
+                                 instance.srid, srs->text(0, 1)));
 
   const auto classes = connection.run(Statement{"SELECT id, classname FROM objectclass"}, stop);
   if (!classes) return classes.error();
@@ -90,7 +93,7 @@ Result<Instance> look_at(postgres::Connection& connection, const std::string& sc
     if (const auto known = class_of(classes->text(row, 1)); known.kind || known.surface)
       instance.classes.emplace(classes->integer(row, 0), known);
   if (instance.ids_of(ObjectKind::Building).empty())
-    return no_citydb(schema, "has no class Building in objectclass");
+    return no_citydb(connection, schema, "has no class Building in objectclass");
   return instance;
 }
 

@@ -50,15 +50,7 @@ Result<std::unique_ptr<Connection>> Pool::connect(const std::stop_token& stop) {
   auto opened = Connection::open(options_);
   if (!opened) return opened.error();
   auto connection = std::make_unique<Connection>(*std::move(opened));
-  // Beside the schema PostGIS must stay in reach, wherever it is installed.
-  // Recursions look dear to the planner: compiling them would take longer than running them.
-  auto path =
-      connection->run(Statement{"SELECT set_config('search_path', quote_ident($1) || ', ' || "
-                                "current_setting('search_path'), false),"
-                                " set_config('jit', 'off', false)",
-                                {schema_}},
-                      stop);
-  if (!path) return path.error();
+  if (auto chosen = connection->set_schema(schema_, stop); !chosen) return chosen.error();
   return connection;
 }
 

@@ -46,35 +46,40 @@ std::string one_line(const char* text) {
 }
 
 /// What the database said, and what an operator can do about it.
-Error error_of(const PGresult* result) {
+Error error_of(const PGresult* result, const Purpose& purpose) {
   const auto* raw = PQresultErrorField(result, PG_DIAG_SQLSTATE);
   const std::string_view state = raw == nullptr ? "" : raw;
   const auto said = one_line(PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY));
   struct Known {
     std::string_view prefix;
     ErrorCode code;
-    std::string_view advice;
+    std::string_view advice;  ///< {0}: flag of the URL, {1}: flag of the schema, {2}: rights
   };
   static constexpr std::array kKnown{
       Known{"57014", ErrorCode::DeadlineExceeded,
-            "; raise --source_timeout_s, or look for missing indexes and run ANALYZE"},
-      Known{"57P", ErrorCode::Unavailable, "; the database is being shut down or restarted"},
-      Known{"08", ErrorCode::Unavailable, "; the connection was lost"},
-      Known{"53", ErrorCode::Unavailable, "; the database is out of connections, memory or disk"},
-      Known{"28", ErrorCode::PermissionDenied, "; check user and password of --source"},
+            "raise --source_timeout_s, or look for missing indexes and run ANALYZE"},
+      Known{"57P", ErrorCode::Unavailable, "the database is being shut down or restarted"},
+      Known{"08", ErrorCode::Unavailable, "the connection was lost"},
+      Known{"53", ErrorCode::Unavailable, "the database is out of connections, memory or disk"},
+      Known{"28", ErrorCode::PermissionDenied, "check user and password of {0}"},
       Known{"42501", ErrorCode::PermissionDenied,
-            "; GRANT USAGE on the schema and SELECT on its tables to the user of --source"},
+            "GRANT USAGE on the schema and {2} to the user of {0}"},
       Known{"42P01", ErrorCode::FailedPrecondition,
-            "; the schema is no complete 3DCityDB: check --source_schema"},
+            "the schema is no complete 3DCityDB: check {1}"},
       Known{"42703", ErrorCode::FailedPrecondition,
-            "; the schema is no 3DCityDB of version 4 or 5: check --source_schema"},
+            "the schema is no 3DCityDB of version 4 or 5: check {1}"},
       Known{"42883", ErrorCode::FailedPrecondition,
-            "; PostGIS is not installed in this database, or not on its search_path"},
-      Known{"3F000", ErrorCode::FailedPrecondition, "; check --source_schema"},
+            "PostGIS is not installed in this database, or not on its search_path"},
+      Known{"3F000", ErrorCode::FailedPrecondition, "check {1}"},
+      Known{"25006", ErrorCode::FailedPrecondition,
+            "the database or its user is read-only: check {0}"},
+      Known{"40", ErrorCode::Unavailable, "somebody else changed the same rows; try again"},
   };
   for (const auto& known : kKnown)
     if (state.starts_with(known.prefix))
-      return fail(known.code, fmt::format("the database says: {}{}", said, known.advice));
+      return fail(known.code, fmt::format("the database says: {}; {}", said,
+                                          fmt::format(fmt::runtime(known.advice), purpose.url_flag,
+                                                      purpose.schema_flag, purpose.rights)));
   return fail(ErrorCode::Internal, fmt::format("the database says: {} (SQLSTATE {})", said, state));
 }
 
@@ -185,7 +190,7 @@ Result<Connection> Connection::open(const ConnectionOptions& options) {
                                             "options", nullptr};
   const std::array<const char*, 5> values{options.url.c_str(), connect_timeout.c_str(), "citymesh",
                                           settings.c_str(), nullptr};
-  Connection connection(PQconnectdbParams(keywords.data(), values.data(), 1));
+  Connection connection(PQconnectdbParams(keywords.data(), values.data(), 1), options.purpose);
   auto* raw = connection.connection_.get();
   if (PQstatus(raw) != CONNECTION_OK)
     return fail(PQconnectionNeedsPassword(raw) != 0 || PQconnectionUsedPassword(raw) != 0
@@ -247,12 +252,24 @@ Result<pg_result*> Connection::receive(const std::stop_token& stop) {
       cancelled = true;
       cancel();  // the answer is then an error, which ends the waiting
     }
-    pollfd socket{PQsocket(raw), static_cast<short>(unsent == 1 ? POLLIN | POLLOUT : POLLIN), 0};
-    if (poll(&socket, 1, kTick_ms) > 0 && (socket.revents & (POLLIN | POLLERR | POLLHUP)) != 0 &&
-        PQconsumeInput(raw) == 0)
-      return lost();
+    if (auto waited = wait(unsent == 1); !waited) return waited.error();
   }
   return PQgetResult(raw);
+}
+
+Result<void> Connection::wait(bool to_write) {
+  auto* raw = connection_.get();
+  pollfd socket{PQsocket(raw), static_cast<short>(to_write ? POLLIN | POLLOUT : POLLIN), 0};
+  if (poll(&socket, 1, kTick_ms) > 0 && (socket.revents & (POLLIN | POLLERR | POLLHUP)) != 0 &&
+      PQconsumeInput(raw) == 0)
+    return lost();
+  return {};
+}
+
+Error Connection::refused(const pg_result* result, const std::stop_token& stop) {
+  broken_ = true;  // which of the statements are prepared is not known any more
+  if (stop.stop_requested()) return fail(ErrorCode::Cancelled, "stopped while the database worked");
+  return error_of(result, purpose_);
 }
 
 Result<std::vector<Rows>> Connection::run(std::span<const Statement> statements,
@@ -281,15 +298,11 @@ Result<std::vector<Rows>> Connection::run(std::span<const Statement> statements,
       case PGRES_PIPELINE_ABORTED:
         break;
       default:
-        if (!problem) problem = error_of(*received);
+        if (!problem) problem = refused(*received, stop);
     }
   }
   if (PQexitPipelineMode(raw) == 0) return lost();
-  if (problem) {
-    broken_ = true;  // which of the statements are prepared is not known any more
-    if (stop.stop_requested()) return fail(ErrorCode::Cancelled, "stopped while reading");
-    return *problem;
-  }
+  if (problem) return *problem;
   return answers;
 }
 
@@ -298,6 +311,65 @@ Result<Rows> Connection::run(const Statement& statement, const std::stop_token& 
   if (!answers) return answers.error();
   if (answers->size() != 1) return fail(ErrorCode::Internal, "a statement gave no rows");
   return std::move(answers->front());
+}
+
+Result<void> Connection::copy(const char* sql, std::string_view rows, const std::stop_token& stop) {
+  auto* raw = connection_.get();
+  if (PQsendQuery(raw, sql) == 0) return lost();
+  const auto started = receive(stop);
+  if (!started) return started.error();
+  const Rows answer(*started);
+  if (PQresultStatus(*started) != PGRES_COPY_IN) {
+    auto problem = refused(*started, stop);
+    while (const auto rest = receive(stop)) {
+      if (*rest == nullptr) break;
+      PQclear(*rest);
+    }
+    return problem;
+  }
+  constexpr std::size_t kPiece = std::size_t{1} << 16;  // what is not sent yet is kept by libpq
+  while (!rows.empty()) {
+    const auto piece = rows.substr(0, kPiece);
+    const int taken = PQputCopyData(raw, piece.data(), static_cast<int>(piece.size()));
+    if (taken < 0) return lost();
+    if (taken > 0) rows.remove_prefix(piece.size());
+    for (int unsent = PQflush(raw); unsent != 0; unsent = PQflush(raw)) {
+      if (unsent < 0) return lost();
+      if (stop.stop_requested()) cancel();
+      if (auto waited = wait(true); !waited) return waited;
+    }
+  }
+  return end_copy(stop);
+}
+
+Result<void> Connection::end_copy(const std::stop_token& stop) {
+  auto* raw = connection_.get();
+  for (int ended = PQputCopyEnd(raw, nullptr); ended != 1; ended = PQputCopyEnd(raw, nullptr)) {
+    if (ended < 0) return lost();
+    if (auto waited = wait(true); !waited) return waited;
+  }
+  std::optional<Error> problem;
+  for (;;) {
+    const auto received = receive(stop);
+    if (!received) return received.error();
+    if (*received == nullptr) break;
+    const Rows answer(*received);
+    if (PQresultStatus(*received) != PGRES_COMMAND_OK && !problem)
+      problem = refused(*received, stop);
+  }
+  if (problem) return *problem;
+  return {};
+}
+
+Result<void> Connection::set_schema(const std::string& schema, const std::stop_token& stop) {
+  // Recursions look dear to the planner: compiling them would take longer than running them.
+  auto path = run(Statement{"SELECT set_config('search_path', quote_ident($1) || ', ' || "
+                            "current_setting('search_path'), false),"
+                            " set_config('jit', 'off', false)",
+                            {schema}},
+                  stop);
+  if (!path) return path.error();
+  return {};
 }
 
 }  // namespace citymesh::postgres

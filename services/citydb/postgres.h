@@ -50,10 +50,18 @@ std::string array_of(std::span<const std::int64_t> numbers);
 /// "{"a","b"}", the text form of text[].
 std::string array_of(std::span<const std::string> texts);
 
+/// What a connection is for, as an operator has to be told when something is missing.
+struct Purpose {
+  std::string_view url_flag = "--source";
+  std::string_view schema_flag = "--source_schema";
+  std::string_view rights = "SELECT on its tables";
+};
+
 struct ConnectionOptions {
   std::string url{};  ///< postgresql://user@host/database or key=value, as libpq takes it
   int connect_timeout_s = 10;
   int statement_timeout_s = 0;  ///< 0: none
+  Purpose purpose{};
 };
 
 /// "postgresql://host:port/database": what may be shown of a URL. Errors: InvalidArgument without
@@ -73,6 +81,15 @@ class Connection {
   Result<std::vector<Rows>> run(std::span<const Statement> statements, const std::stop_token& stop);
   Result<Rows> run(const Statement& statement, const std::stop_token& stop);
 
+  /// Rows in the text form of COPY to the table that `sql`, COPY … FROM STDIN, names. Errors: as of
+  /// run().
+  Result<void> copy(const char* sql, std::string_view rows, const std::stop_token& stop);
+
+  /// Unqualified names are looked for in this schema first; PostGIS stays in reach, wherever it is
+  /// installed.
+  Result<void> set_schema(const std::string& schema, const std::stop_token& stop);
+
+  const Purpose& purpose() const { return purpose_; }
   bool usable() const;  ///< neither lost nor in the middle of something
   /// Ends a transaction, if there is one.
   void roll_back();
@@ -81,15 +98,20 @@ class Connection {
   struct Closer {
     void operator()(pg_conn* connection) const;
   };
-  explicit Connection(pg_conn* connection) : connection_(connection) {}
+  Connection(pg_conn* connection, Purpose purpose) : connection_(connection), purpose_(purpose) {}
 
   Result<void> send(const Statement& statement);
   /// The next answer, waiting for it; null where a statement has no more.
   Result<pg_result*> receive(const std::stop_token& stop);
+  /// Waits for the socket, for at most a moment.
+  Result<void> wait(bool to_write);
+  Result<void> end_copy(const std::stop_token& stop);
+  Error refused(const pg_result* result, const std::stop_token& stop);
   void cancel();
   Error lost() const;
 
   std::unique_ptr<pg_conn, Closer> connection_;
+  Purpose purpose_;
   std::vector<const char*> prepared_{};
   bool broken_ = false;
 };

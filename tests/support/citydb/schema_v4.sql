@@ -1,4 +1,4 @@
--- A 3DCityDB of version 4.4 reduced to what buildings and TIN relief need: the documented tables, columns, types, indexes and
+-- A 3DCityDB of version 4.4 reduced to what buildings and TIN relief need: the documented tables, columns, types, indexes, sequences and
 -- rows of OBJECTCLASS and DATABASE_SRS; no other modules, foreign keys or functions. Variables as psql has them:
 --   psql -v schema=citydb -v srid=25832 -v srs_name=urn:ogc:def:crs:EPSG::25832 -f schema_v4.sql
 CREATE EXTENSION IF NOT EXISTS postgis;
@@ -57,8 +57,9 @@ INSERT INTO objectclass (id, is_ade_class, is_toplevel, classname, tablename, su
   (60, 0, 0, 'OuterBuildingCeilingSurface', 'thematic_surface', 29, 3),
   (61, 0, 0, 'OuterBuildingFloorSurface', 'thematic_surface', 29, 3);
 
+CREATE SEQUENCE cityobject_seq;
 CREATE TABLE cityobject (
-  id bigint PRIMARY KEY,
+  id bigint DEFAULT nextval('cityobject_seq') PRIMARY KEY,
   objectclass_id integer NOT NULL,
   gmlid varchar(256),
   gmlid_codespace varchar(1000),
@@ -84,8 +85,9 @@ CREATE INDEX cityobj_term_date_inx ON cityobject (termination_date);
 CREATE INDEX cityobj_last_mod_date_inx ON cityobject (last_modification_date);
 CREATE INDEX cityobject_lineage_inx ON cityobject (lineage);
 
+CREATE SEQUENCE surface_geometry_seq;
 CREATE TABLE surface_geometry (
-  id bigint PRIMARY KEY,
+  id bigint DEFAULT nextval('surface_geometry_seq') PRIMARY KEY,
   gmlid varchar(256),
   gmlid_codespace varchar(1000),
   parent_id bigint,
@@ -349,11 +351,11 @@ CREATE TABLE tin_relief (
   surface_geometry_id bigint
 );
 
-CREATE FUNCTION citydb_pkg.citydb_version(OUT version text, OUT major_version integer, OUT minor_version integer,
+CREATE OR REPLACE FUNCTION citydb_pkg.citydb_version(OUT version text, OUT major_version integer, OUT minor_version integer,
                                           OUT minor_revision integer)
 LANGUAGE sql IMMUTABLE AS $$ SELECT '4.4.2'::text, 4, 4, 2 $$;
 
-CREATE FUNCTION citydb_pkg.db_metadata(schema_name text DEFAULT 'citydb', OUT schema_srid integer, OUT schema_gml_srs_name text,
+CREATE OR REPLACE FUNCTION citydb_pkg.db_metadata(schema_name text DEFAULT 'citydb', OUT schema_srid integer, OUT schema_gml_srs_name text,
                                        OUT coord_ref_sys_name text, OUT coord_ref_sys_kind text, OUT wktext text,
                                        OUT versioning text)
 LANGUAGE plpgsql STABLE AS $$

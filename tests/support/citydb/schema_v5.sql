@@ -1,4 +1,4 @@
--- A 3DCityDB of version 5.0 or 5.1 reduced to what buildings and TIN relief need: the documented tables, columns, types, indexes
+-- A 3DCityDB of version 5.0 or 5.1 reduced to what buildings and TIN relief need: the documented tables, columns, types, indexes, sequences
 -- and rows of NAMESPACE, OBJECTCLASS, DATATYPE and DATABASE_SRS; no other modules, foreign keys or functions. Variables as psql
 -- has them; 5.0 has the JSON type json, 5.1 has jsonb:
 --   psql -v schema=citydb -v srid=25832 -v srs_name=urn:ogc:def:crs:EPSG::25832 -v minor=1 -v revision=3 -v json=jsonb -f schema_v5.sql
@@ -143,8 +143,9 @@ CREATE TABLE codelist_entry (
   definition text
 );
 
+CREATE SEQUENCE feature_seq;
 CREATE TABLE feature (
-  id bigint PRIMARY KEY,
+  id bigint DEFAULT nextval('feature_seq') PRIMARY KEY,
   objectclass_id integer NOT NULL,
   objectid text,
   identifier text,
@@ -164,8 +165,9 @@ CREATE INDEX feature_objectid_inx ON feature (objectid);
 CREATE INDEX feature_envelope_spx ON feature USING gist (envelope);
 CREATE INDEX feature_termination_date_inx ON feature (termination_date);
 
+CREATE SEQUENCE geometry_data_seq;
 CREATE TABLE geometry_data (
-  id bigint PRIMARY KEY,
+  id bigint DEFAULT nextval('geometry_data_seq') PRIMARY KEY,
   geometry geometry(GeometryZ, :srid),
   implicit_geometry geometry(GeometryZ),
   geometry_properties :json,
@@ -203,8 +205,9 @@ CREATE TABLE address (
   content_mime_type text
 );
 
+CREATE SEQUENCE property_seq;
 CREATE TABLE property (
-  id bigint PRIMARY KEY,
+  id bigint DEFAULT nextval('property_seq') PRIMARY KEY,
   feature_id bigint,
   parent_id bigint,
   datatype_id integer NOT NULL,
@@ -236,13 +239,13 @@ CREATE INDEX property_val_lod_inx ON property (val_lod);
 CREATE INDEX property_val_feature_fkx ON property (val_feature_id);
 CREATE INDEX property_val_geometry_fkx ON property (val_geometry_id);
 
-CREATE FUNCTION citydb_pkg.citydb_version()
+CREATE OR REPLACE FUNCTION citydb_pkg.citydb_version()
 RETURNS TABLE (version text, major_version integer, minor_version integer, minor_revision integer) LANGUAGE sql IMMUTABLE
 BEGIN ATOMIC
   SELECT '5.' || :minor::text || '.' || :revision::text, 5, :minor, :revision;
 END;
 
-CREATE FUNCTION citydb_pkg.db_metadata(schema_name text DEFAULT 'citydb')
+CREATE OR REPLACE FUNCTION citydb_pkg.db_metadata(schema_name text DEFAULT 'citydb')
 RETURNS TABLE (srid integer, srs_name text, coord_ref_sys_name text, coord_ref_sys_kind text, wktext text)
 LANGUAGE plpgsql STABLE AS $$
 BEGIN
