@@ -4,6 +4,7 @@ of their own and images cannot be pulled: the same services, settings, secrets, 
 
 - the network is that of the machine, on the free ports that are given; names of services are addresses of this machine
 - images are those that try-compose.sh built; Grafana, which Debian does not have, is left out
+- databases do not wait for the disk, for nothing in them has to last
 - checks of health are run by try-compose.sh, and limits of files and processes are low
 
     docker-compose … config | host_network.py PORTS.json PROMETHEUS.yml > compose.yml
@@ -47,7 +48,7 @@ def on_host_network(config, ports, prometheus_file):
         service["image"] = IMAGES.get(name, service["image"])
         service.setdefault("environment", {}).update(settings_of(name, ports))
         if name.startswith("citydb"):
-            service["command"] = ["postgres", "-c", "listen_addresses=127.0.0.1"]
+            service["command"] = ["postgres", "-c", "listen_addresses=127.0.0.1", "-c", "fsync=off", "-c", "max_wal_size=4GB"]
         if name.startswith("load"):
             service["environment"]["SRID"] = srid
         if name == "prometheus":

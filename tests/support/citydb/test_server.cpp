@@ -88,6 +88,8 @@ Result<std::unique_ptr<TestServer>> TestServer::start() {
   const char* const named = std::getenv("CITYMESH_TEST_CITYDB");
   if (named && *named) {
     server->url_ = named;
+    // Connected to before it is made, so that the libraries which this needs end after it.
+    if (auto reached = Database::open(server->url_); !reached) return reached.error();
     return server;
   }
   auto cluster = Cluster::start();
