@@ -40,11 +40,11 @@ def limit_files(max_bytes):
 
 
 class Service:
-    """The program in a process of its own; the ports are those it found free."""
+    """The program in a process of its own, over a file, a folder or the URL of a source; the ports are those it found free."""
 
     def __init__(self, data, state, *options, max_file_bytes=None):
         self.log = Path(state).with_suffix(".log")
-        command = [PROGRAM, "serve", "--data", str(data), "--state", str(state), "--listen", "127.0.0.1:0",
+        command = [PROGRAM, "serve", "--source" if "://" in str(data) else "--data", str(data), "--state", str(state), "--listen", "127.0.0.1:0",
                    "--grpc", "127.0.0.1:0", *options]
         with open(self.log, "wb") as log:
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT,

@@ -1,0 +1,100 @@
+"""`citymesh serve --source postgresql://…` over both versions of 3DCityDB: REST, gRPC, and a database that goes away."""
+import json
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+from cluster import Cluster
+from grpc_test import GrpcTest
+from service import BERLIN, PROGRAM, SMALL, delivered_names, is_closed, read_obj
+
+FILE = BERLIN / "3910_5817.gml"
+SRID = 25833
+COPIES = 10  # of the city, for jobs that last
+
+
+def meshes(obj):
+    """Without comments, which name the source."""
+    return "\n".join(line for line in obj.splitlines() if not line.startswith("#"))
+
+
+def setUpModule():
+    global cluster, from_file
+    with tempfile.TemporaryDirectory(prefix="citymesh-e2e-") as folder:
+        subprocess.run([PROGRAM, "run", "export-for-simulation", "--input", FILE, "--output", folder, "--overwrite",
+                        "--bbox", ",".join(map(str, SMALL["bbox"]))], check=True, stdout=subprocess.DEVNULL)
+        from_file = meshes(Path(folder, "model.obj").read_text(encoding="utf-8"))
+    cluster = Cluster()
+    unittest.addModuleCleanup(cluster.close)
+
+
+class FromDatabase:
+    version = ""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.data = cluster.make("city_" + cls.version.replace(".", "_"), cls.version, SRID, COPIES, FILE)
+        super().setUpClass()
+
+    def export_over_rest(self, inputs):
+        job = self.service.execute(inputs)
+        status = self.service.wait(job)
+        self.assertEqual(status["status"], "successful", status)
+        return self.service.get(job + "/results/report.json").json(), self.service.get(job + "/results/model.obj").body
+
+    def export_over_grpc(self, inputs):
+        job = self.watch(self.submit(inputs))[-1]
+        self.assertEqual(job.state, self.pb.SUCCESSFUL, job)
+        return json.loads(self.fetch(job, "report")), self.fetch(job, "obj")
+
+    def test_a_box_gives_the_meshes_of_the_file_over_rest_and_grpc(self):
+        for export in (self.export_over_rest, self.export_over_grpc):
+            with self.subTest(export.__name__):
+                report, obj = export({"bbox": SMALL})
+                bodies = read_obj(obj.decode())
+                self.assertGreater(report["counts"]["requested"], 50)
+                self.assertEqual(report["counts"]["delivered"], report["counts"]["requested"])
+                self.assertEqual(set(bodies), delivered_names(report))
+                self.assertTrue(all(is_closed(faces) for faces in bodies.values()))
+                self.assertEqual(meshes(obj.decode()), from_file)
+
+    def test_a_database_that_restarts_fails_at_most_the_jobs_that_read_it(self):
+        for command in ("kill", "stop"):
+            with self.subTest(command):
+                job = self.service.execute({})
+                self.service.wait(job, lambda status: status.get("done", 0) > 0)
+                cluster.tell(command)
+                self.assertEqual(self.service.get("/healthz").status, 200)
+                while_gone = self.service.execute({"bbox": SMALL})
+                self.assertEqual(self.service.get(while_gone).status, 200)
+                cluster.tell("start")
+                ended = self.service.wait(job)
+                self.assertIn(ended["status"], ("successful", "failed"), ended)
+                if ended["status"] == "failed":
+                    self.assertRegex(ended["exception"]["detail"], "database|connection|server", ended)
+                self.service.wait(while_gone)
+                report, obj = self.export_over_rest({"bbox": SMALL})
+                self.assertEqual(meshes(obj.decode()), from_file)
+
+    def test_a_database_that_is_gone_is_named_with_what_to_do(self):
+        cluster.tell("stop")
+        try:
+            status = self.service.wait(self.service.execute({"bbox": SMALL}))
+            self.assertEqual(status["status"], "failed")
+            self.assertIn(cluster.folder, status["exception"]["detail"])
+        finally:
+            cluster.tell("start")
+        self.export_over_grpc({"bbox": SMALL})
+
+
+class Version4(FromDatabase, GrpcTest):
+    version = "4"
+
+
+class Version5(FromDatabase, GrpcTest):
+    version = "5.1"
+
+
+if __name__ == "__main__":
+    unittest.main()
