@@ -62,6 +62,7 @@ clean() {
   [ ! -e "$run/compose.yml" ] || compose down --volumes --timeout 30 || true
   podman rm -fa >/dev/null 2>&1 || true
   [ -z "$service" ] || { kill "$service" 2>/dev/null && wait "$service" 2>/dev/null; } || true
+  sleep 1  # what ends with the containers still writes there
   umount "$work/storage/overlay" 2>/dev/null || true
   rm -rf "$run"
   [ -n "$kept" ] || rm -rf "$work"

@@ -56,6 +56,10 @@ class Kubernetes(unittest.TestCase):
         self.assertEqual({mount["name"] for mount in self.container["volumeMounts"]}, volumes.keys() | claims)
         self.assertIn({"name": self.container["image"], "newTag": self.kustomization["images"][0]["newTag"]}, self.kustomization["images"])
 
+    def test_selectors_stay_as_they_are_written(self):
+        for labels in self.kustomization["labels"]:
+            self.assertIs(labels["includeSelectors"], False)
+
     def test_the_tag_is_the_version(self):
         version = re.search(r"project\(citymesh VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")).group(1)
         self.assertEqual(self.kustomization["images"][0]["newTag"], version)
