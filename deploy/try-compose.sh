@@ -4,7 +4,7 @@
 # engine and no registry: podman runs the containers, debootstrap makes their base (packages: deploy/packages.txt, group try).
 #   deploy/try-compose.sh [--programs BUILD] [--work DIR] [--ccache DIR] [--jobs N] [--mirror URL]
 # --programs: takes citymesh, citymesh_citydb_load and integration_citydb out of this build folder, where otherwise the image builds
-#             them from source (an hour on two cores)
+#             them from source (half an hour on two cores)
 # --work:     keeps images and base there for the next time; default: a new folder that is removed
 # --ccache:   a cache of compilations that outlives the image
 set -euo pipefail
@@ -76,6 +76,10 @@ step "base image"
 if ! podman image exists localhost/citymesh-base; then
   [ -e "$work/base/etc/debian_version" ] || debootstrap --variant=minbase bookworm "$work/base" "$mirror" >"$run/debootstrap.log" 2>&1 ||
     { tail -n 20 "$run/debootstrap.log" >&2; exit 1; }
+  # As small as debian:bookworm-slim: no documents, no languages, no caches of packages.
+  (cd "$work/base" && rm -rf var/cache/apt/archives/*.deb var/lib/apt/lists/* usr/share/{doc,man,locale,info}/*)
+  printf 'path-exclude /usr/share/%s/*\n' doc man locale info >"$work/base/etc/dpkg/dpkg.cfg.d/slim"
+  printf 'DPkg::Post-Invoke { "rm -f /var/cache/apt/archives/*.deb || true"; };\n' >"$work/base/etc/apt/apt.conf.d/slim"
   container=$(buildah from scratch)
   buildah add -q "$container" "$work/base" / >/dev/null
   buildah commit -q --rm "$container" localhost/citymesh-base >/dev/null
