@@ -126,4 +126,10 @@ Result<CanonicalInputs> canonical_inputs(std::string_view process, std::string_v
   return CanonicalInputs{*std::move(text), *std::move(values)};
 }
 
+bool asks_to_write_back(std::string_view canonical_json) {
+  const auto given = json::parse(canonical_json, nullptr, false);
+  const auto found = given.is_object() ? given.find("write_back") : given.end();
+  return found != given.end() && found->is_boolean() && found->get<bool>();
+}
+
 }  // namespace citymesh

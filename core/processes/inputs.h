@@ -43,4 +43,7 @@ struct CanonicalInputs {
 /// boxes); Unimplemented for choices that are not built.
 Result<CanonicalInputs> canonical_inputs(std::string_view process, std::string_view inputs_json);
 
+/// Whether canonical inputs ask for `write_back`.
+bool asks_to_write_back(std::string_view canonical_json);
+
 }  // namespace citymesh

@@ -83,7 +83,7 @@ Result<ApiKeys> ApiKeys::parse(std::string_view text) {
                       words.size()));
     if (!is_name(words[0])) return refuse(fmt::format("expected {}", kNameExpected));
     const auto role = role_from(words[1]);
-    if (!role) return refuse("unknown role, expected read-own, submit or admin");
+    if (!role) return refuse("unknown role, expected read-own, submit, write-back or admin");
     const auto hash = parse_hash(words[2]);
     if (!hash) return refuse("the key is no hash, expected sha256: and 64 hexadecimal digits");
     if (std::ranges::any_of(keys.entries_, [&](const Entry& e) { return e.hash == *hash; }))

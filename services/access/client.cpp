@@ -8,9 +8,10 @@
 namespace citymesh {
 namespace {
 
-constexpr std::array<std::pair<Role, std::string_view>, 3> kRoles{{
+constexpr std::array<std::pair<Role, std::string_view>, 4> kRoles{{
     {Role::ReadOwn, "read-own"},
     {Role::Submit, "submit"},
+    {Role::WriteBack, "write-back"},
     {Role::Admin, "admin"},
 }};
 

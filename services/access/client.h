@@ -10,14 +10,15 @@ namespace citymesh {
 
 /// What a client may do; each role may do what those before it may.
 enum class Role {
-  None,     ///< ask what the service is
-  ReadOwn,  ///< see its own jobs, their results and the metrics
-  Submit,   ///< submit jobs and dismiss its own
-  Admin,    ///< see and dismiss the jobs of all
+  None,       ///< ask what the service is
+  ReadOwn,    ///< see its own jobs, their results and the metrics
+  Submit,     ///< submit jobs and dismiss its own
+  WriteBack,  ///< submit jobs that also write their results to the database
+  Admin,      ///< see and dismiss the jobs of all
 };
 
 std::string_view to_string(Role role);
-/// `read-own`, `submit` and `admin`.
+/// `read-own`, `submit`, `write-back` and `admin`.
 std::optional<Role> role_from(std::string_view name);
 
 /// Who sent a request.

@@ -126,9 +126,10 @@ void add_make_key(CLI::App& program, int& code) {
       ->required()
       ->type_name("NAME");
   command
-      .add_option("role", *role,
-                  "read-own (see its jobs), submit (and make and dismiss them) or admin (and those "
-                  "of all)")
+      .add_option(
+          "role", *role,
+          "read-own (see its jobs), submit (and make and dismiss them), write-back (and let "
+          "them write to the database) or admin (and see and dismiss those of all)")
       ->required()
       ->type_name("ROLE");
   command.footer(

@@ -56,6 +56,7 @@ WorkerOptions worker_options(const ServeOptions& options, const ServedData& data
   if (options.result_cache == "on") worker.source_version = data.version;
   // Where clients are told apart, none may learn what another has asked for.
   worker.share_results = !access.is_required();
+  worker.write_back = data.write_back.get();
   return worker;
 }
 

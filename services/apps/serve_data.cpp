@@ -12,6 +12,7 @@
 #include "services/catalogue/catalogue.h"
 #include "services/catalogue/data_version.h"
 #include "services/citydb/citydb.h"
+#include "services/citydb/write_back.h"
 #include "services/wfs/wfs.h"
 #include "services/worker/limited_source.h"
 
@@ -69,6 +70,15 @@ Result<SourceFactory> open_service(const ServeOptions& options) {
   return SourceFactory(*std::move(service));
 }
 
+Result<void> check_inputs(const Inputs& inputs, double most_km2, bool may_write) {
+  if (inputs.write_back && !may_write)
+    return fail(ErrorCode::InvalidArgument,
+                "input `write_back` is true, but this service writes to no database; expected "
+                "false, or a service that reads a 3DCityDB and was started with "
+                "--write_back_schema");
+  return most_km2 > 0 ? check_area(inputs, most_km2) : Result<void>{};
+}
+
 bool is_web(const std::string& source) {
   return source.starts_with("http://") || source.starts_with("https://");
 }
@@ -83,10 +93,17 @@ Result<ServedData> open_served_data(const ServeOptions& options, Log& log,
                                          : open_database(options);
   if (!opened) return opened.error();
   served.open = within_limits(*std::move(opened), options);
-  if (options.max_job_area_km2 > 0)  // no box is larger than it may be
-    served.check_inputs = [most = options.max_job_area_km2](const Inputs& inputs) {
-      return check_area(inputs, most);
-    };
+  if (!options.write_back_schema.empty()) {
+    auto write_back = open_write_back(
+        {.url = options.write_back_url.empty() ? options.source : options.write_back_url,
+         .schema = options.write_back_schema,
+         .source_schema = options.source_schema,
+         .statement_timeout_s = options.source_timeout_s});
+    if (!write_back) return write_back.error();
+    served.write_back = *std::move(write_back);
+  }
+  served.check_inputs = [most = options.max_job_area_km2, may_write = served.write_back != nullptr](
+                            const Inputs& inputs) { return check_inputs(inputs, most, may_write); };
   if (options.source.empty()) {
     served.name = options.data.string();
     served.version = [data = options.data] { return data_version(data); };

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <stop_token>
 #include <string>
 
 #include "core/base/result.h"
 #include "core/processes/inputs.h"
 #include "services/config/serve_options.h"
+#include "services/jobs/write_back.h"
 #include "services/telemetry/log.h"
 #include "services/worker/run_offered.h"
 
@@ -18,7 +20,8 @@ struct ServedData {
   SourceFactory open{};  ///< within the limits of a job
   /// Text that differs whenever what jobs read does; none: unknown.
   std::function<std::string()> version{};
-  /// Refuses a box that is larger than it may be; empty: no limit.
+  std::unique_ptr<WriteBackStore> write_back{};  ///< none: jobs cannot write back
+  /// Refuses a box that is larger than it may be, and writing back where it cannot be.
   std::function<Result<void>(const Inputs& inputs)> check_inputs{};
 };
 

@@ -88,6 +88,11 @@ void add_serve(CLI::App& program, ServeOptions& options, std::function<void()> r
       "to that database, at the same time; who needs one more waits");
   add("--source_timeout_s", options.source_timeout_s,
       "of one statement of that database; 0: no limit");
+  add("--write_back_schema", options.write_back_schema,
+      "another schema, a 3DCityDB too, that jobs with `write_back` may write to; empty: none may");
+  add("--write_back_url", options.write_back_url,
+      "of its database, with a user who may write; as --source when empty")
+      ->type_name("URL");
   add("--api_keys", options.api_keys,
       "file of the API keys that are accepted, by lines of `citymesh make-key`")
       ->type_name("FILE");

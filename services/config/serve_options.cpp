@@ -58,6 +58,10 @@ Result<void> check_web_origins(std::string_view list) {
   return {};
 }
 
+bool is_database(const std::string& url) {
+  return url.starts_with("postgresql://") || url.starts_with("postgres://");
+}
+
 Result<void> check_access(const ServeOptions& options) {
   const bool tokens = !options.oidc_jwks.empty();
   for (const auto& [name, value] : {std::pair("--oidc_issuer", options.oidc_issuer),
@@ -148,6 +152,21 @@ Result<void> check(const ServeOptions& options) {
   if (options.source_connections < 1 || options.source_connections > kMostThreads)
     return wrong("--source_connections", options.source_connections,
                  fmt::format("1 to {}", kMostThreads));
+  if (options.write_back_schema.empty() && !options.write_back_url.empty())
+    return fail(ErrorCode::InvalidArgument,
+                "--write_back_url is given without --write_back_schema; expected both");
+  if (!options.write_back_schema.empty()) {
+    if (!is_database(options.source))
+      return wrong("--write_back_schema", fmt::format("'{}'", options.write_back_schema),
+                   "only with a 3DCityDB in --source");
+    if (options.write_back_schema == options.source_schema)
+      return wrong("--write_back_schema", fmt::format("'{}'", options.write_back_schema),
+                   "another schema than --source_schema, which is never written to");
+    if (!options.write_back_url.empty() && !is_database(options.write_back_url))
+      return wrong("--write_back_url",
+                   fmt::format("'{}'", without_passwords(options.write_back_url)),
+                   "postgresql://user@host:port/database");
+  }
   if (options.source_timeout_s < 0)
     return wrong("--source_timeout_s", options.source_timeout_s, "0 (no limit) or more");
   if (options.source.empty() && !std::filesystem::exists(options.data, error))

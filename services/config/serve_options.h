@@ -29,6 +29,9 @@ struct ServeOptions {
   unsigned source_connections = 4;       ///< to it, at the same time
   int source_timeout_s = 600;            ///< of one statement; 0: none
 
+  std::string write_back_schema{};  ///< where jobs may write back to; empty: they may not
+  std::string write_back_url{};     ///< of its database, with a user who may; empty: as `source`
+
   std::filesystem::path state = "citymesh-state";  ///< jobs and results
   Endpoint listen{"127.0.0.1", 8080};              ///< REST
   Endpoint grpc{"127.0.0.1", 50051};

@@ -91,7 +91,8 @@ Result<AskedJob> JobManager::check(JobSpec spec) const {
   spec.inputs_json = std::move(inputs->json);
   if (inputs->of_city && options_.check_inputs)
     if (auto allowed = options_.check_inputs(*inputs->of_city); !allowed) return allowed.error();
-  return AskedJob{std::move(spec), inputs->of_city && inputs->of_city->only_estimate};
+  return AskedJob{std::move(spec), inputs->of_city && inputs->of_city->only_estimate,
+                  inputs->of_city && inputs->of_city->write_back};
 }
 
 Result<Estimate> JobManager::estimate(const AskedJob& asked) const {

@@ -38,6 +38,7 @@ struct JobManagerOptions {
 struct AskedJob {
   JobSpec spec{};
   bool only_estimate = false;  ///< the input `mode` says so: no job, but estimate()
+  bool write_back = false;     ///< the input of this name: not everybody has the right to it
 };
 
 /// The verbs of the service. REST and gRPC translate to and from these and nothing else.

@@ -100,6 +100,10 @@ Response Api::execute(const Call& call) const {
   if (!asked)
     return problem_response(problem_kind(asked.error().code), asked.error().message, call.accept);
   if (asked->only_estimate) return estimate(call, *asked);
+  if (asked->write_back)
+    if (const auto allowed = require(call.client, Role::WriteBack); !allowed)
+      return problem_response(problem_kind(allowed.error().code), allowed.error().message,
+                              call.accept);
   const auto key = idempotency_key(call.request.headers);
   if (!key)
     return problem_response(problem_kind(key.error().code), key.error().message, call.accept);

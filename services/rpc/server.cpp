@@ -135,7 +135,12 @@ class JobsService final : public v1::Jobs::Service {
           return to_status(checked.error());
       auto spec = to_spec(*request);
       spec.subscriber.base = links_base_;
-      const auto job = jobs_.submit(std::move(spec), key, caller.name, caller.trace_id);
+      auto asked = jobs_.check(std::move(spec));
+      if (!asked) return to_status(asked.error());
+      if (asked->write_back)
+        if (const auto allowed = require(caller, Role::WriteBack); !allowed)
+          return to_status(allowed.error());
+      const auto job = jobs_.accept(*std::move(asked), key, caller.name, caller.trace_id);
       if (job && log_ != nullptr)
         log_->info("job_accepted", {{"job_id", job->id},
                                     {"process", job->spec.process},

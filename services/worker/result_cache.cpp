@@ -5,13 +5,16 @@
 
 #include <array>
 
+#include "core/processes/inputs.h"
 #include "services/offer/echo.h"
 
 namespace citymesh {
 
 std::string cache_key(const Job& job, std::string_view source_version, bool shared,
                       std::string_view program) {
-  if (source_version.empty() || job.spec.process == kEcho) return {};
+  if (source_version.empty() || job.spec.process == kEcho ||
+      asks_to_write_back(job.spec.inputs_json))
+    return {};
   std::string text;
   // With their lengths, so that no two lists of parts give the same text.
   for (const std::string_view part :

@@ -11,8 +11,8 @@ namespace citymesh {
 
 /// Under which the results of a job are found again. Equal for jobs that give the same files: of
 /// the same process, inputs, version of the source and program, and, unless results are `shared`,
-/// of the same owner. Empty, never found: for an unknown version of the source (empty), and for
-/// processes that read none.
+/// of the same owner. Empty, never found: for an unknown version of the source (empty), for jobs
+/// that write back, and for processes that read nothing.
 std::string cache_key(const Job& job, std::string_view source_version, bool shared,
                       std::string_view program = version());
 

@@ -37,11 +37,11 @@ Result<ProcessOutcome> echo(std::string_view inputs_json, const std::filesystem:
 
 Result<ProcessOutcome> run_offered(std::string_view process, std::string_view inputs_json,
                                    const SourceFactory& open, const std::filesystem::path& folder,
-                                   const RunContext& context) {
+                                   const RunContext& context, BodySink* write_back) {
   if (process == kEcho) return echo(inputs_json, folder, context);
   const auto source = open();
   if (!source) return source.error();
-  auto outcome = run(process, inputs_json, **source, folder, context);
+  auto outcome = run(process, inputs_json, **source, folder, context, write_back);
   if (!outcome) return outcome.error();
   auto message = summary(*outcome);
   return ProcessOutcome{std::move(outcome->files), std::move(message), std::move(outcome->timings),

@@ -28,9 +28,10 @@ struct ProcessOutcome {
 };
 
 /// Runs a process and writes its files to `folder`, which must exist and be empty. `open` is called
-/// only by a process that reads a source. Errors: those of core/pipeline's run().
+/// only by a process that reads a source, `write_back` fed where the inputs ask for it. Errors:
+/// those of core/pipeline's run().
 Result<ProcessOutcome> run_offered(std::string_view process, std::string_view inputs_json,
                                    const SourceFactory& open, const std::filesystem::path& folder,
-                                   const RunContext& context);
+                                   const RunContext& context, BodySink* write_back = nullptr);
 
 }  // namespace citymesh

@@ -18,6 +18,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/processes/inputs.h"
+#include "services/jobs/write_back.h"
 #include "services/offer/offer.h"
 #include "services/telemetry/log.h"
 #include "services/telemetry/metrics.h"
@@ -33,6 +35,7 @@ constexpr int kPatience = 5;  ///< nice value of working threads
 constexpr TimeMs kClaimWaitMs = 250;
 constexpr Milliseconds kKeeperTick{50};  // dismissals made by another process show within this time
 constexpr Milliseconds kRestAfterError{500};
+constexpr Milliseconds kRestAfterWithdrawal{10'000};  // that did not succeed
 
 /// Why a running job was told to stop. The first reason counts.
 enum class StopReason { None, Dismissed, Shutdown, Deadline, LeaseLost };
@@ -45,6 +48,7 @@ struct Run {
   Clock::time_point next_heartbeat{};
   std::string cache_key{};  // of the results; empty: not to be found by later jobs
   bool cached = false;
+  std::unique_ptr<WriteBackStore::Attempt> write_back{};  // none: not asked for
 
   void end(StopReason why) {
     auto none = StopReason::None;
@@ -101,6 +105,9 @@ struct WorkerPool::Impl {
   Result<ProcessOutcome> run_job(const Job& job, Run& run, std::filesystem::path& folder);
   Result<ProcessOutcome> answer(const Job& job, Run& run, std::filesystem::path& folder);
   Result<ProcessOutcome> compute(const Job& job, Run& run, const std::filesystem::path& folder);
+  Result<void> write_back(const Run& run);
+  void withdraw_later(const Job& job);
+  void withdraw_now();
   std::string key_of(const Job& job) const;
   std::string_view finish(const Run& run, std::string_view process, Result<ProcessOutcome> outcome,
                           const std::filesystem::path& folder);
@@ -125,6 +132,9 @@ struct WorkerPool::Impl {
   std::mutex running_mutex;
   std::map<std::string, std::shared_ptr<Run>> running;  // by job id
   JobFeed::Subscription dismissals;
+  std::mutex withdrawals_mutex;
+  std::set<std::string> withdrawals;  // jobs whose rows have to go
+  Clock::time_point next_withdrawal{};
   std::vector<std::jthread> workers;
   std::jthread keeper;
 };
@@ -142,6 +152,8 @@ void WorkerPool::start() {
     if (job.dismiss_requested) pool.dismiss(job.id);
     // Of a job that is given up nobody is left to take the files away.
     if (job.state == JobState::Failed && job.attempt > 0) pool.discard({job.id, job.attempt, {}});
+    if (is_final(job.state) && job.state != JobState::Successful && job.attempt > 0)
+      pool.withdraw_later(job);
   });
   pool.keeper = std::jthread([&pool](const std::stop_token& stop) { pool.keep(stop); });
   const auto process = fmt::format("{}-{}", ::getpid(), new_job_id().substr(0, 8));
@@ -158,6 +170,8 @@ void WorkerPool::stop() {
   auto& pool = *impl_;
   for (auto& worker : pool.workers) worker.request_stop();
   pool.workers.clear();  // joins; leases are kept alive until here
+  pool.next_withdrawal = {};
+  pool.withdraw_now();
   pool.keeper = {};
   pool.dismissals = {};
 }
@@ -165,6 +179,7 @@ void WorkerPool::stop() {
 void WorkerPool::Impl::claim_and_work(const std::stop_token& shutdown, const std::string& worker) {
   while (!shutdown.stop_requested()) {
     try {
+      withdraw_now();
       const auto claim = queue.claim(worker, options.lease_ms, kClaimWaitMs);
       if (!claim) {
         log.error("claim_failed", {{"error", claim.error().message}});
@@ -304,7 +319,42 @@ Result<ProcessOutcome> WorkerPool::Impl::compute(const Job& job, Run& run,
     return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
   };
   context.threads = std::max(1u, options.threads_per_job);
-  return run_offered(job.spec.process, job.spec.inputs_json, source, folder, context);
+  if (options.write_back != nullptr && asks_to_write_back(job.spec.inputs_json))
+    run.write_back = options.write_back->begin(job.id, job.spec.process, context.stop);
+  return run_offered(job.spec.process, job.spec.inputs_json, source, folder, context,
+                     run.write_back.get());
+}
+
+/// Files first, then rows, then the word that the job is successful: a worker that dies between has
+/// its job worked on again, with the same rows in place of these. Only who still has the job
+/// writes.
+Result<void> WorkerPool::Impl::write_back(const Run& run) {
+  if (!run.write_back) return {};
+  if (auto kept = queue.heartbeat(run.claim, options.lease_ms); !kept) return kept;
+  return run.write_back->commit();
+}
+
+void WorkerPool::Impl::withdraw_later(const Job& job) {
+  if (options.write_back == nullptr || !asks_to_write_back(job.spec.inputs_json)) return;
+  const std::scoped_lock lock(withdrawals_mutex);
+  withdrawals.insert(job.id);
+}
+
+void WorkerPool::Impl::withdraw_now() {
+  std::set<std::string> due;
+  {
+    const std::scoped_lock lock(withdrawals_mutex);
+    if (Clock::now() < next_withdrawal) return;
+    due.swap(withdrawals);
+  }
+  for (const auto& job_id : due) {
+    const auto withdrawn = options.write_back->withdraw(job_id);
+    if (withdrawn) continue;
+    log.warning("not_withdrawn", {{"job_id", job_id}, {"error", withdrawn.error().message}});
+    const std::scoped_lock lock(withdrawals_mutex);
+    withdrawals.insert(job_id);
+    next_withdrawal = Clock::now() + kRestAfterWithdrawal;
+  }
 }
 
 /// Ends the attempt in store and queue; returns the word for log and metrics.
@@ -342,6 +392,8 @@ std::string_view WorkerPool::Impl::finish(const Run& run, std::string_view proce
   if (!files) return close(run, JobState::Failed, files.error().message, files.error(), {});
   if (auto committed = results.commit(claim.job_id, claim.attempt); !committed)
     return close(run, JobState::Failed, committed.error().message, committed.error(), {});
+  if (auto written = write_back(run); !written)
+    return close(run, JobState::Failed, written.error().message, written.error(), {});
   if (run.cached) metrics.results_reused();
   for (const auto& [stage, seconds] : outcome->timings.stages_s)
     metrics.stage_took(process, stage, seconds);
@@ -398,6 +450,9 @@ std::string_view WorkerPool::Impl::close(const Run& run, JobState state, std::st
   });
   if (!job) {
     // Another attempt owns the job, or the store is down and the lease will run out.
+    if (const auto other = jobs.get(claim.job_id);
+        run.write_back && other && is_final(other->state) && other->state != JobState::Successful)
+      withdraw_later(*other);
     log.error("job_not_closed", {{"job_id", claim.job_id}, {"error", job.error().message}});
     discard(claim);
     return "lost";

@@ -13,6 +13,7 @@ namespace citymesh {
 
 class Log;
 class Metrics;
+class WriteBackStore;
 
 struct WorkerOptions {
   unsigned workers = 1;               ///< jobs worked on at the same time
@@ -26,6 +27,9 @@ struct WorkerOptions {
   /// what an earlier one asked for gets the results of that one; none: every job is worked on.
   std::function<std::string()> source_version{};
   bool share_results = false;  ///< also with jobs of other owners
+  /// For jobs that write back, which fail without; must outlive the pool. A job that ends otherwise
+  /// than successful has what it wrote withdrawn, in time: tried until it is done.
+  WriteBackStore* write_back = nullptr;
 };
 
 /// Threads that claim jobs, run them and store their results. They keep nothing between jobs, and

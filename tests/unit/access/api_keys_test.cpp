@@ -54,8 +54,8 @@ TEST(ApiKeysTest, AFileThatIsWrongIsRefusedWithItsLineAndWithoutWhatStandsThere)
   const Case cases[] = {
       {"city submit", "NAME ROLE sha256:HEX"},
       {"city submit " + hash + " more", "NAME ROLE sha256:HEX"},
-      {"city owner " + hash, "read-own, submit or admin"},
-      {"city none " + hash, "read-own, submit or admin"},
+      {"city owner " + hash, "read-own, submit, write-back or admin"},
+      {"city none " + hash, "read-own, submit, write-back or admin"},
       {"ci/ty submit " + hash, "a name of"},
       {std::string(65, 'n') + " submit " + hash, "a name of"},
       {"city submit " + key->key, "is no hash"},
@@ -88,6 +88,9 @@ TEST(ClientTest, RolesAreLevels) {
   EXPECT_TRUE(require({"key:city", Role::Submit}, Role::Submit));
   EXPECT_TRUE(require({"key:city", Role::Admin}, Role::ReadOwn));
   EXPECT_TRUE(require({}, Role::None));
+  EXPECT_FALSE(require({"key:city", Role::Submit}, Role::WriteBack));
+  EXPECT_TRUE(require({"key:city", Role::WriteBack}, Role::Submit));
+  EXPECT_EQ(role_from(to_string(Role::WriteBack)), Role::WriteBack);
   const auto refused = require({"key:city", Role::ReadOwn}, Role::Submit);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::PermissionDenied);

@@ -94,6 +94,14 @@ TEST_F(RestAccess, AKeyThatIsNotKnownProvesNothing) {
   EXPECT_EQ(send_with({{"X-API-Key", city_.key}}, "GET", "/jobs").status, 200);
 }
 
+TEST_F(RestAccess, WritingBackIsARightOfItsOwn) {
+  constexpr const char* kWriteBack = R"({"inputs": {"write_back": true}})";
+  const auto refused = send_with({{"X-API-Key", city_.key}}, "POST", kExecution, kWriteBack);
+  EXPECT_EQ(refused.status, 403);
+  EXPECT_THAT(text(refused), HasSubstr("expected write-back"));
+  EXPECT_EQ(send_with({{"X-API-Key", operator_.key}}, "POST", kExecution, kWriteBack).status, 201);
+}
+
 TEST_F(RestAccess, AJobOfAnotherClientDoesNotExist) {
   const auto id = submit_as(city_);
   service_.succeed(service_.start(), JobService::export_files());
