@@ -31,6 +31,12 @@ class Cluster:
                        stdout=subprocess.DEVNULL)
         return self.url(database)
 
+    def sql(self, database, *statements):
+        """What the last statement answers."""
+        commands = [part for statement in statements for part in ("-c", statement)]
+        return subprocess.run(["psql", "-X", "-At", "-v", "ON_ERROR_STOP=1", self.url(database), *commands], check=True,
+                              capture_output=True, text=True).stdout.strip().split("\n")[-1]
+
     def tell(self, command):
         """`stop`, `kill` or `start`."""
         self.process.stdin.write(command + "\n")

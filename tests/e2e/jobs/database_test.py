@@ -31,10 +31,17 @@ def setUpModule():
 
 class FromDatabase:
     version = ""
+    objects = ""  # the table of objects
+    tables = ""   # all that are filled
+    is_building = ""
 
     @classmethod
     def setUpClass(cls):
         cls.data = cluster.make("city_" + cls.version.replace(".", "_"), cls.version, SRID, COPIES, FILE)
+        cls.healed = "healed_" + cls.version.replace(".", "_")
+        url = cluster.make(cls.healed, cls.version, SRID, 1, FILE)
+        cluster.sql(cls.healed, f"TRUNCATE {cls.tables}", "ALTER SCHEMA citydb RENAME TO healed")
+        cls.options = ("--write_back_schema", "healed", "--write_back_url", url)
         super().setUpClass()
 
     def export_over_rest(self, inputs):
@@ -58,6 +65,23 @@ class FromDatabase:
                 self.assertEqual(set(bodies), delivered_names(report))
                 self.assertTrue(all(is_closed(faces) for faces in bodies.values()))
                 self.assertEqual(meshes(obj.decode()), from_file)
+
+    def test_a_job_writes_back_all_it_delivers_or_nothing(self):
+        count = f"SELECT count(*) FROM healed.{self.objects} WHERE termination_date IS NULL"
+        inputs = {"bbox": SMALL, "write_back": True}
+        for export in (self.export_over_rest, self.export_over_grpc):
+            with self.subTest(export.__name__):
+                report, _ = export(inputs)
+                buildings = f"{count} AND {self.is_building}"
+                self.assertEqual(int(cluster.sql(self.healed, buildings)), report["counts"]["delivered"])
+        before = cluster.sql(self.healed, count)
+        job = self.service.execute({"write_back": True})
+        self.service.wait(job, lambda status: status.get("done", 0) > 0)
+        self.service.send("DELETE", job)
+        self.service.wait(job)
+        self.assertEqual(cluster.sql(self.healed, count), before)
+        lineage = f"SELECT count(*) FROM healed.{self.objects} WHERE lineage = '{job.rsplit('/', 1)[-1]}'"
+        self.assertEqual(cluster.sql(self.healed, lineage), "0")
 
     def test_a_database_that_restarts_fails_at_most_the_jobs_that_read_it(self):
         for command in ("kill", "stop"):
@@ -90,10 +114,16 @@ class FromDatabase:
 
 class Version4(FromDatabase, GrpcTest):
     version = "4"
+    objects = "cityobject"
+    tables = "cityobject, surface_geometry, building, thematic_surface"
+    is_building = "objectclass_id = 26"
 
 
 class Version5(FromDatabase, GrpcTest):
     version = "5.1"
+    objects = "feature"
+    tables = "feature, geometry_data, property"
+    is_building = "objectclass_id = 901"
 
 
 if __name__ == "__main__":
