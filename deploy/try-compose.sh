@@ -10,7 +10,7 @@
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
-programs= work= ccache= jobs= mirror=http://deb.debian.org/debian
+programs='' work='' ccache='' jobs='' mirror=http://deb.debian.org/debian
 while [ $# -gt 0 ]; do
   case $1 in
     --programs) programs=$(realpath "$2") ;;

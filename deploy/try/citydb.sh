@@ -8,7 +8,6 @@ if [ ! -s "$PGDATA/PG_VERSION" ]; then
   echo "unix_socket_directories = '$PGHOST'" >>"$PGDATA/postgresql.conf"
   pg_ctl -s -w start -o "-c listen_addresses=''" >/dev/null
   export POSTGRES_USER=postgres
-  # shellcheck disable=SC2086
   make() { psql -v ON_ERROR_STOP=1 --no-psqlrc -q -U postgres -d "$POSTGRES_DB" "$@"; }
   createdb -U postgres "$POSTGRES_DB"
   make -v schema=citydb -v srid="$SRID" -v srs_name="urn:ogc:def:crs:EPSG::$SRID" -v json=jsonb -v minor=1 -v revision=3 \
