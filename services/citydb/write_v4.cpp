@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
+#include <optional>
 #include <utility>
 
 #include "core/write/boundaries.h"
@@ -124,7 +123,7 @@ class WriterV4 final : public VersionWriter {
     if (!boundaries) return;
     for (const Boundary& surface : boundaries->surfaces)
       if (!is_opening(surface.type))
-        add_surface(*object.body, *boundaries, surface, id, installation, *ids);
+        add_surface(*object.body, *boundaries, surface, id, installation);
   }
 
   void add_cityobject(std::int64_t id, std::int64_t class_id, std::string_view gml_id,
@@ -207,7 +206,7 @@ class WriterV4 final : public VersionWriter {
   }
 
   void add_surface(const Body& body, const Boundaries& boundaries, const Boundary& surface,
-                   std::int64_t owner, bool of_installation, BodyIds&) {
+                   std::int64_t owner, bool of_installation) {
     const auto id = add_thing(body, surface);
     const auto geometry = add_multi_surface(body, boundaries, surface, id);
     thematic_surfaces_.number(id).number(class_of(class_name_v4(surface.type)));

@@ -122,8 +122,8 @@ class WriterV5 final : public VersionWriter {
         .end();
   }
 
-  void add_geometry_row(std::int64_t owner, int lod, std::string_view kind, std::string geometry,
-                        std::string properties) {
+  void add_geometry_row(std::int64_t owner, int lod, std::string_view kind,
+                        const std::string& geometry, const std::string& properties) {
     const auto id = geometry_ids_.take();
     geometries_.number(id).text(geometry).text(properties).number(owner).end();
     properties_.number(property_ids_.take())
