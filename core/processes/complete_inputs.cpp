@@ -16,6 +16,8 @@ using nlohmann::json;
 constexpr std::size_t kMaxShownBytes = 80;
 constexpr std::size_t kMaxInputBytes = 8u << 20;
 constexpr std::size_t kMaxDepth = 16;
+constexpr std::size_t kMaxPositions = 10'000;  ///< every building may be compared with each side
+constexpr const char* kCrs84 = "http://www.opengis.net/def/crs/OGC/1.3/CRS84";
 
 std::string shown(const json& value) {
   std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
@@ -62,9 +64,63 @@ Result<json> check_bbox(const json& value) {
     if (!crs) return fail(ErrorCode::InvalidArgument, "input `bbox`: " + crs.error().message);
     checked["crs"] = value["crs"];
   } else {
-    checked["crs"] = "http://www.opengis.net/def/crs/OGC/1.3/CRS84";
+    checked["crs"] = kCrs84;
   }
   return checked;
+}
+
+std::size_t positions_of(const json& coordinates) {
+  if (!coordinates.is_array() || coordinates.empty() || coordinates[0].is_number()) return 1;
+  std::size_t count = 0;
+  for (const json& member : coordinates) count += positions_of(member);
+  return count;
+}
+
+bool is_position(const json& value) {
+  return value.is_array() && (value.size() == 2 || value.size() == 3) &&
+         std::all_of(value.begin(), value.end(), [](const json& number) {
+           return number.is_number() && std::isfinite(number.get<double>());
+         });
+}
+
+/// What is wrong with the rings of a GeoJSON Polygon; empty: nothing.
+std::string_view problem_of_rings(const json& rings) {
+  if (!rings.is_array() || rings.empty()) return "`coordinates` with at least one ring";
+  for (const json& ring : rings) {
+    if (!ring.is_array() || ring.size() < 4) return "rings of at least four positions";
+    if (!std::all_of(ring.begin(), ring.end(), is_position))
+      return "positions of two or three finite numbers";
+    if (ring.front() != ring.back()) return "rings that end where they begin";
+  }
+  return {};
+}
+
+Result<json> check_polygon(const json& value) {
+  if (!value.is_object() || !value.contains("coordinates") ||
+      (value.value("type", json()) != "Polygon" && value.value("type", json()) != "MultiPolygon"))
+    return wrong("polygon", value, "a GeoJSON Polygon or MultiPolygon");
+  for (const auto& [key, member] : value.items())
+    if (key != "type" && key != "coordinates" && key != "coordRefSys")
+      return fail(ErrorCode::InvalidArgument,
+                  fmt::format("input `polygon` has an unknown member `{}`, expected type, "
+                              "coordinates, coordRefSys",
+                              key));
+  const json& coordinates = value["coordinates"];
+  const json polygons = value["type"] == "Polygon" ? json::array({coordinates}) : coordinates;
+  if (!polygons.is_array() || polygons.empty())
+    return wrong("polygon", value, "`coordinates` with at least one polygon");
+  for (const json& rings : polygons)
+    if (const auto problem = problem_of_rings(rings); !problem.empty())
+      return wrong("polygon", value, problem);
+  if (const auto positions = positions_of(coordinates); positions > kMaxPositions)
+    return fail(
+        ErrorCode::ResourceExhausted,
+        fmt::format("input `polygon` has {} positions, the limit is {}", positions, kMaxPositions));
+  const json crs = value.value("coordRefSys", json(kCrs84));
+  if (!crs.is_string()) return wrong("polygon", value, "`coordRefSys` to be a text");
+  if (auto known = parse_crs(crs.get<std::string>()); !known)
+    return fail(ErrorCode::InvalidArgument, "input `polygon`: " + known.error().message);
+  return json{{"type", value["type"]}, {"coordinates", coordinates}, {"coordRefSys", crs}};
 }
 
 Result<json> check(const OptionSpec& option, const json& value) {
@@ -108,6 +164,8 @@ Result<json> check(const OptionSpec& option, const json& value) {
     }
     case OptionKind::BoundingBox:
       return check_bbox(value);
+    case OptionKind::Polygon:
+      return check_polygon(value);
     case OptionKind::Json:
       return value;
   }

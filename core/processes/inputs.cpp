@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <utility>
@@ -18,31 +20,90 @@ using nlohmann::json;
 constexpr double kDegree_km = 111.2;  // of a great circle
 constexpr double kKm2_m2 = 1e6;
 
-double area_km2(const RequestBox& box, const CrsFacts& facts) {
-  const double width = std::abs(box.max_x - box.min_x);
-  const double height = std::abs(box.max_y - box.min_y);
-  if (!facts.geographic)
-    return width * height * facts.horizontal_unit_m * facts.horizontal_unit_m / kKm2_m2;
-  const double middle = (box.min_y + box.max_y) / 2 * std::numbers::pi / 180;
-  return width * height * kDegree_km * kDegree_km * std::max(0.0, std::cos(middle));
+/// A CRS in which a request names places, and whether its axes come latitude first.
+struct RequestCrs {
+  Crs crs{};
+  CrsFacts facts{};
+  /// OGC: a place has the axis order of its CRS, and geographic EPSG CRSs are latitude first.
+  bool latitude_first = false;
+};
+
+Result<RequestCrs> request_crs(std::string_view input, const json& name) {
+  auto crs = parse_crs(name.get<std::string>());
+  if (!crs) return crs.error();
+  auto facts = describe_crs(*crs);
+  if (!facts)
+    return fail(ErrorCode::InvalidArgument,
+                fmt::format("input `{}`: {}", input, facts.error().message));
+  const bool latitude_first = facts->geographic && crs->id.starts_with("EPSG:");
+  return RequestCrs{*std::move(crs), *std::move(facts), latitude_first};
+}
+
+/// @param area in squares of the CRS's unit
+/// @param middle_y of what has the area
+double in_km2(double area, double middle_y, const CrsFacts& facts) {
+  if (!facts.geographic) return area * facts.horizontal_unit_m * facts.horizontal_unit_m / kKm2_m2;
+  return area * kDegree_km * kDegree_km *
+         std::max(0.0, std::cos(middle_y * std::numbers::pi / 180));
 }
 
 Result<void> read_bbox(const json& bbox, Inputs& inputs) {
-  const auto crs = parse_crs(bbox["crs"].get<std::string>());
-  if (!crs) return crs.error();
-  const auto facts = describe_crs(*crs);
-  if (!facts) return fail(ErrorCode::InvalidArgument, "input `bbox`: " + facts.error().message);
+  const auto named = request_crs("bbox", bbox["crs"]);
+  if (!named) return named.error();
   const auto numbers = bbox["bbox"].get<std::vector<double>>();
   const std::size_t half = numbers.size() / 2;
-  RequestBox box{numbers[0], numbers[1], numbers[half], numbers[half + 1], {}, *crs};
-  // OGC: a box has the axis order of its CRS, and geographic EPSG CRSs are latitude first.
-  if (facts->geographic && crs->id.starts_with("EPSG:")) {
+  RequestBox box{numbers[0], numbers[1], numbers[half], numbers[half + 1], {}, named->crs};
+  if (named->latitude_first) {
     std::swap(box.min_x, box.min_y);
     std::swap(box.max_x, box.max_y);
   }
   if (half == 3) box.z_range_m = {numbers[2], numbers[5]};
-  inputs.query.bbox = box;
-  inputs.bbox_area_km2 = area_km2(box, *facts);
+  inputs.area_km2 = in_km2((box.max_x - box.min_x) * (box.max_y - box.min_y),
+                           (box.min_y + box.max_y) / 2, named->facts);
+  inputs.query.bbox = std::move(box);
+  return {};
+}
+
+/// Twice the area of a ring.
+double doubled_area(const std::vector<std::array<double, 2>>& ring) {
+  double sum = 0;
+  const auto& [ox, oy] = ring.front();
+  for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++)
+    sum += (ring[j][0] - ox) * (ring[i][1] - oy) - (ring[i][0] - ox) * (ring[j][1] - oy);
+  return std::abs(sum);
+}
+
+Result<void> read_polygon(const json& polygon, Inputs& inputs) {
+  if (inputs.query.bbox)
+    return fail(ErrorCode::InvalidArgument,
+                "inputs `bbox` and `polygon` are both given, expected one of them");
+  const auto named = request_crs("polygon", polygon["coordRefSys"]);
+  if (!named) return named.error();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  RequestBox box{kInfinity, kInfinity, -kInfinity, -kInfinity, {}, named->crs};
+  const json& coordinates = polygon["coordinates"];
+  double doubled = 0;
+  for (const json& rings :
+       polygon["type"] == "Polygon" ? json::array({coordinates}) : coordinates) {
+    double sign = 1;  // the first ring has the area, the others take from it
+    for (const json& given : rings) {
+      auto& ring = box.rings.emplace_back();
+      for (std::size_t i = 0; i + 1 < given.size(); ++i) {
+        auto& [x, y] = ring.emplace_back();
+        x = given[i][0].get<double>();
+        y = given[i][1].get<double>();
+        if (named->latitude_first) std::swap(x, y);
+        box.min_x = std::min(box.min_x, x);
+        box.min_y = std::min(box.min_y, y);
+        box.max_x = std::max(box.max_x, x);
+        box.max_y = std::max(box.max_y, y);
+      }
+      doubled += sign * doubled_area(ring);
+      sign = -1;
+    }
+  }
+  inputs.area_km2 = in_km2(std::max(0.0, doubled / 2), (box.min_y + box.max_y) / 2, named->facts);
+  inputs.query.bbox = std::move(box);
   return {};
 }
 
@@ -53,6 +114,8 @@ Result<Inputs> read_inputs(std::string_view canonical_json) {
   inputs.only_estimate = given.value("mode", "run") == "estimate";
   if (const auto bbox = given.find("bbox"); bbox != given.end() && !bbox->is_null())
     if (auto read = read_bbox(*bbox, inputs); !read) return read.error();
+  if (const auto polygon = given.find("polygon"); polygon != given.end() && !polygon->is_null())
+    if (auto read = read_polygon(*polygon, inputs); !read) return read.error();
   const std::string rule = given.value("bbox_rule", "intersects");
   inputs.query.bbox_rule = rule == "centre"   ? BboxRule::Centre
                            : rule == "within" ? BboxRule::Within

@@ -16,7 +16,7 @@ struct Inputs {
   /// `mode`: what would be processed is asked for, not the result.
   bool only_estimate = false;
   BuildingQuery query{};
-  double bbox_area_km2 = 0;  ///< near enough for a limit; 0 without a box
+  double area_km2 = 0;  ///< of box or polygon, near enough for a limit; 0 without
   std::vector<Lod> lod{};
   std::vector<std::string> formats{};
   bool block_on_failure = true;

@@ -19,9 +19,13 @@ constexpr OptionSpec kBbox{
     "bbox", OptionKind::BoundingBox, "null",
     "Box to export: {\"bbox\": [minx, miny, maxx, maxy], \"crs\": uri}, axis order of the named "
     "CRS, CRS84 when none is named. Everything when absent."};
+constexpr OptionSpec kPolygon{
+    "polygon", OptionKind::Polygon, "null",
+    "Region to export instead of a box: a GeoJSON Polygon or MultiPolygon, in CRS84 unless "
+    "`coordRefSys` names another CRS, then in its axis order. `bbox_rule` applies."};
 constexpr OptionSpec kBboxRule{
     "bbox_rule", OptionKind::Text, "\"intersects\"",
-    "Which buildings belong to the box: the footprint touches it, the centre of the "
+    "Which buildings belong to the box or polygon: the footprint touches it, the centre of the "
     "envelope lies in it, or the whole footprint lies in it.",
     kBboxRules};
 constexpr OptionSpec kObjectIds{
@@ -114,8 +118,8 @@ constexpr OptionSpec kMode{
     "be and what is wrong already, at once and without a job.",
     kModes};
 
-constexpr std::array kValidateInputs{kBbox, kBboxRule, kObjectIds, kCrs, kSourceCrs, kAxisOrder,
-                                     kLod,  kSnap,     kPlanarity, kGap, kMode};
+constexpr std::array kValidateInputs{kBbox,      kPolygon, kBboxRule, kObjectIds, kCrs, kSourceCrs,
+                                     kAxisOrder, kLod,     kSnap,     kPlanarity, kGap, kMode};
 
 constexpr OutputSpec kReportOutput{"report", "application/json",
                                    "What became of every building, defects and repairs included"};
@@ -135,16 +139,14 @@ struct Table {
     const auto format = [this](std::string_view default_json) {
       return OptionSpec{"formats", OptionKind::TextList, default_json, "Formats to write.", keys};
     };
-    heal_inputs = {kBbox,      kBboxRule,     kObjectIds,
-                   kCrs,       kSourceCrs,    kAxisOrder,
-                   kLod,       kInstallation, format("[\"cityjson\"]"),
-                   kFailure,   kPart,         kSnap,
-                   kPlanarity, kDisplacement, kHole,
-                   kWriteBack, kMode};
-    export_inputs = {
-        kBbox,         kBboxRule,           kObjectIds, kCrs,       kSourceCrs, kAxisOrder, kLod,
-        kInstallation, format("[\"obj\"]"), kFailure,   kPart,      kUnite,     kPatch,     kSnap,
-        kPlanarity,    kDisplacement,       kHole,      kWriteBack, kMode};
+    heal_inputs = {kBbox,      kPolygon,   kBboxRule, kObjectIds,    kCrs,
+                   kSourceCrs, kAxisOrder, kLod,      kInstallation, format("[\"cityjson\"]"),
+                   kFailure,   kPart,      kSnap,     kPlanarity,    kDisplacement,
+                   kHole,      kWriteBack, kMode};
+    export_inputs = {kBbox,      kPolygon,      kBboxRule, kObjectIds,    kCrs,
+                     kSourceCrs, kAxisOrder,    kLod,      kInstallation, format("[\"obj\"]"),
+                     kFailure,   kPart,         kUnite,    kPatch,        kSnap,
+                     kPlanarity, kDisplacement, kHole,     kWriteBack,    kMode};
     processes = {
         ProcessSpec{"export-for-simulation", "Export for simulation",
                     "Selects buildings by box or id, heals them, and delivers closed, 2-manifold "
@@ -183,6 +185,8 @@ std::string_view to_string(OptionKind kind) {
       return "list of texts";
     case OptionKind::BoundingBox:
       return "bounding box";
+    case OptionKind::Polygon:
+      return "polygon";
     case OptionKind::Json:
       return "JSON value";
   }

@@ -8,7 +8,7 @@
 
 namespace citymesh {
 
-enum class OptionKind { Boolean, Integer, Number, Text, TextList, BoundingBox, Json };
+enum class OptionKind { Boolean, Integer, Number, Text, TextList, BoundingBox, Polygon, Json };
 
 std::string_view to_string(OptionKind kind);  ///< for people: "whole number", "list of texts"
 

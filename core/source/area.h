@@ -23,11 +23,16 @@ struct Footprints {
   std::vector<Ring> rings{};
 };
 
-/// The ring of a request's box in the plane of the working CRS. All tests are closed: touching is
-/// inside. They are done in doubles relative to the ring, exact to about 1e-9 of its size.
+/// Not closed.
+using Ring2 = std::vector<Point2>;
+
+/// What a request wants in the plane of the working CRS: inside by the even-odd rule over its
+/// rings. All tests are closed: touching is inside. They are done in doubles relative to the rings,
+/// exact to about 1e-9 of their size.
 class Area {
  public:
-  explicit Area(std::vector<Point2> ring);
+  /// @param rings at least one, none empty
+  explicit Area(std::vector<Ring2> rings);
 
   const Point2& min() const { return min_; }
   const Point2& max() const { return max_; }
@@ -35,11 +40,14 @@ class Area {
     return min.x <= max_.x && max.x >= min_.x && min.y <= max_.y && max.y >= min_.y;
   }
   bool contains(const Point2& point) const;
+  /// Whether all of a ring's sides lie within. What an opening of the area leaves out in the middle
+  /// of the ring is not looked for.
+  bool contains_sides(std::span<const Point2> ring) const;
   /// Whether a polygon (exterior, holes) has a point in common with the area.
   bool touches(std::span<const Point2> points, std::span<const Footprints::Ring> polygon) const;
 
  private:
-  std::vector<Point2> ring_;  ///< not closed
+  std::vector<Ring2> rings_;
   Point2 min_{}, max_{};
 };
 

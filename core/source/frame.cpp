@@ -112,6 +112,36 @@ std::vector<SrsUse> interpret_srs(const FileRecord& file, const Crs& assumed, Ax
   return uses;
 }
 
+Result<std::vector<Ring2>> rings_of(const RequestBox& box, const Transformer* transformer) {
+  std::vector<std::vector<Point3>> rings;
+  if (box.rings.empty())
+    rings.push_back(densified_ring(box.min_x, box.min_y, box.max_x, box.max_y));
+  const double step = std::max(box.max_x - box.min_x, box.max_y - box.min_y) / (kPointsPerSide - 1);
+  for (const auto& corners : box.rings) {
+    auto& ring = rings.emplace_back();
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const auto& [ax, ay] = corners[i];
+      const auto& [bx, by] = corners[(i + 1) % corners.size()];
+      const int pieces = step > 0 ? 1 + static_cast<int>(std::hypot(bx - ax, by - ay) / step) : 1;
+      for (int p = 0; p < pieces; ++p) {
+        const double t = static_cast<double>(p) / pieces;
+        ring.push_back({ax + (bx - ax) * t, ay + (by - ay) * t, 0});
+      }
+    }
+  }
+  std::vector<Ring2> flat;
+  for (auto& ring : rings) {
+    if (transformer != nullptr)
+      if (auto moved = transformer->apply(ring); !moved)
+        return fail(ErrorCode::InvalidArgument,
+                    (box.rings.empty() ? "bbox: " : "polygon: ") + moved.error().message);
+    auto& points = flat.emplace_back();
+    points.reserve(ring.size());
+    for (const Point3& point : ring) points.push_back({point.x, point.y});
+  }
+  return flat;
+}
+
 std::vector<Point3> densified_ring(double min_x, double min_y, double max_x, double max_y) {
   const std::array<Point3, 4> corners{
       {{min_x, min_y, 0}, {max_x, min_y, 0}, {max_x, max_y, 0}, {min_x, max_y, 0}}};

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/citymodel/crs.h"
+#include "core/source/area.h"
 #include "core/source/catalogue.h"
 #include "core/source/source.h"
 
@@ -40,6 +41,10 @@ struct SrsUse {
 /// as it is. `assumed` stands for no name.
 std::vector<SrsUse> interpret_srs(const FileRecord& file, const Crs& assumed, AxisOrder order,
                                   CrsBook& book);
+
+/// The boundary of what a request wants, moved by `transformer` unless that is null; sides have
+/// points between their ends, because they bend. Errors: InvalidArgument where PROJ cannot.
+Result<std::vector<Ring2>> rings_of(const RequestBox& box, const Transformer* transformer);
 
 /// A box's ring, `kPointsPerSide` points on each side, counter-clockwise, not closed.
 inline constexpr int kPointsPerSide = 21;

@@ -176,22 +176,20 @@ class Planner {
     return {};
   }
 
-  // The request's box in a working CRS.
+  // What the request wants in a working CRS.
   Result<const Area*> area_in(const Crs& working) {
     const auto known = areas_.find(working.id);
     if (known != areas_.end()) return &known->second;
     const RequestBox& box = *query_.bbox;
-    auto ring = densified_ring(box.min_x, box.min_y, box.max_x, box.max_y);
+    const Transformer* transformer = nullptr;
     if (!box.crs.id.empty()) {
-      const auto& transformer = book_.transformer(box.crs, working);
-      if (!transformer) return transformer.error();
-      if (auto moved = transformer->apply(ring); !moved)
-        return fail(ErrorCode::InvalidArgument, "bbox: " + moved.error().message);
+      const auto& found = book_.transformer(box.crs, working);
+      if (!found) return found.error();
+      transformer = &*found;
     }
-    std::vector<Point2> flat;
-    flat.reserve(ring.size());
-    for (const Point3& point : ring) flat.push_back({point.x, point.y});
-    return &areas_.emplace(working.id, Area(std::move(flat))).first->second;
+    auto rings = rings_of(box, transformer);
+    if (!rings) return rings.error();
+    return &areas_.emplace(working.id, Area(*std::move(rings))).first->second;
   }
 
   Result<void> choose() {
@@ -375,8 +373,8 @@ class Planner {
       flat.reserve(points_.size());
       for (const Point3& point : points_) flat.push_back({point.x, point.y});
       if (within) {
-        for (const Point2& point : flat)
-          if (!area.contains(point)) return false;
+        for (const Footprints::Ring& ring : polygon)
+          if (!area.contains_sides(std::span(flat).subspan(ring.first, ring.count))) return false;
         any = true;
       } else if (area.touches(flat, polygon)) {
         return true;

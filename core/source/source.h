@@ -21,11 +21,14 @@ enum class BboxRule { Intersects, Centre, Within };
 /// How files store their coordinates. Auto: as interpret_srs() finds out.
 enum class AxisOrder { Auto, EastNorth, NorthEast };
 
-/// A box as a request states it: axis order of the named CRS already turned to x east, y north.
+/// A box, or a region with the box around it, as a request states it: axis order of the named CRS
+/// already turned to x east, y north.
 struct RequestBox {
   double min_x = 0, min_y = 0, max_x = 0, max_y = 0;
   std::optional<std::array<double, 2>> z_range_m{};
   Crs crs{"OGC:CRS84"};
+  /// Of the region, not closed; what is inside goes by the even-odd rule. Empty: the whole box.
+  std::vector<std::vector<std::array<double, 2>>> rings{};
 };
 
 /// What to take from a source. No box and no ids: everything.

@@ -84,6 +84,7 @@ Result<json> typed(const OptionSpec* option, std::string_view text) {
     case OptionKind::BoundingBox:
       if (text.starts_with('{')) return as_json(text, json::value_t::object).value_or(json(text));
       return bbox_object(text);
+    case OptionKind::Polygon:
     case OptionKind::Json: {
       auto value = json::parse(text, nullptr, false);
       return value.is_discarded() ? json(text) : value;

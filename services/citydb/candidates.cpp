@@ -74,25 +74,23 @@ DatabaseCatalogue::DatabaseCatalogue(postgres::Connection& connection, const Sch
   facts_.srs_names = {"", instance.srs_name};
 }
 
-/// The ring of the request's box in the coordinates of the database; none without a box.
+/// What the request wants in the coordinates of the database; none: everything.
 Result<std::optional<Area>> DatabaseCatalogue::area_in_database() const {
   if (!query_.bbox) return std::optional<Area>{};
-  const auto& box = *query_.bbox;
-  auto ring = source::densified_ring(box.min_x, box.min_y, box.max_x, box.max_y);
   const auto crs = parse_crs(instance_.srs_name);
   if (!crs) return crs.error();
-  if (box.crs.known() && crs->known()) {
-    const auto transformer = Transformer::create(box.crs, *crs);
-    if (!transformer) return transformer.error();
-    if (auto moved = transformer->apply(ring); !moved)
-      return fail(ErrorCode::InvalidArgument, "bbox: " + moved.error().message);
+  std::optional<Transformer> transformer;
+  if (query_.bbox->crs.known() && crs->known()) {
+    auto found = Transformer::create(query_.bbox->crs, *crs);
+    if (!found) return found.error();
+    transformer = *std::move(found);
   }
-  std::vector<Point2> flat;
-  flat.reserve(ring.size());
-  for (const auto& point : ring)
-    flat.push_back(query_.axis_order == AxisOrder::NorthEast ? Point2{point.y, point.x}
-                                                             : Point2{point.x, point.y});
-  return std::optional(Area(std::move(flat)));
+  auto rings = source::rings_of(*query_.bbox, transformer ? &*transformer : nullptr);
+  if (!rings) return rings.error();
+  if (query_.axis_order == AxisOrder::NorthEast)
+    for (auto& ring : *rings)
+      for (auto& point : ring) std::swap(point.x, point.y);
+  return std::optional(Area(*std::move(rings)));
 }
 
 Result<std::vector<std::shared_ptr<const source::FileRecord>>> DatabaseCatalogue::files(
@@ -201,8 +199,7 @@ Result<void> DatabaseCatalogue::add_footprints(std::vector<BuildingRecord>& reco
     if (record.extent.is_empty()) continue;
     record.footprint = footprint_of(record.extent);
     const auto at = corners(record.extent);
-    const bool inside =
-        std::ranges::all_of(at, [&](const Point2& corner) { return (*area)->contains(corner); });
+    const bool inside = (*area)->contains_sides(at);
     if (inside || !(*area)->box_touches(at[0], at[2])) continue;
     crossing.push_back(static_cast<std::int64_t>(record.number));
     by_id.emplace(crossing.back(), &record);

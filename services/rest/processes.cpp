@@ -37,6 +37,19 @@ Json bbox_schema() {
            {"crs", {{"type", "string"}, {"default", kCrs84}}}}}}}}};
 }
 
+Json polygon_schema() {
+  return {{"type", "object"},
+          {"required", {"type", "coordinates"}},
+          {"additionalProperties", false},
+          {"properties",
+           {{"type", {{"type", "string"}, {"enum", {"Polygon", "MultiPolygon"}}}},
+            {"coordinates",
+             {{"type", "array"},
+              {"minItems", 1},
+              {"items", {{"type", "array"}, {"items", Json::object()}}}}},
+            {"coordRefSys", {{"type", "string"}, {"default", kCrs84}}}}}};
+}
+
 Json kind_schema(const OptionSpec& option) {
   if (!option.schema_json.empty()) return Json::parse(option.schema_json);
   switch (option.kind) {
@@ -52,6 +65,8 @@ Json kind_schema(const OptionSpec& option) {
       return {{"type", "array"}, {"items", text_schema(option)}};
     case OptionKind::BoundingBox:
       return bbox_schema();
+    case OptionKind::Polygon:
+      return polygon_schema();
     case OptionKind::Json:
       break;
   }
@@ -157,7 +172,8 @@ std::string inputs_schema_json(const ProcessSpec& process) {
       plain.erase("default");
     }
     // OGC: an object is wrapped as {"value": {...}}, but for a bounding box.
-    const bool wrapped = option.kind == OptionKind::Json && plain.value("type", "") == "object" &&
+    const bool wrapped = (option.kind == OptionKind::Json || option.kind == OptionKind::Polygon) &&
+                         plain.value("type", "") == "object" &&
                          plain.value("format", "") != "ogc-bbox";
     input["oneOf"] = Json::array({Json{{"$ref", "#/components/schemas/qualifiedValue"}}});
     if (!wrapped) input["oneOf"].insert(input["oneOf"].begin(), std::move(plain));

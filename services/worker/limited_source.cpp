@@ -56,10 +56,12 @@ class LimitedSource final : public CitySource {
 }  // namespace
 
 Result<void> check_area(const Inputs& inputs, double max_km2) {
-  if (inputs.bbox_area_km2 <= max_km2) return {};
-  return fail(ErrorCode::InvalidArgument,
-              fmt::format("input `bbox` covers {:.4g} km², at most {:.4g} km² may be in one job",
-                          inputs.bbox_area_km2, max_km2));
+  if (inputs.area_km2 <= max_km2) return {};
+  return fail(
+      ErrorCode::InvalidArgument,
+      fmt::format("input `{}` covers {:.4g} km², at most {:.4g} km² may be in one job",
+                  inputs.query.bbox && !inputs.query.bbox->rings.empty() ? "polygon" : "bbox",
+                  inputs.area_km2, max_km2));
 }
 
 std::unique_ptr<CitySource> limited(std::unique_ptr<CitySource> source, const JobLimits& limits) {

@@ -14,8 +14,8 @@ struct JobLimits {
   std::uint64_t points = 0;  ///< of all buildings read, parts and installations included
 };
 
-/// Whether the box is small enough: known before a source is asked. Errors: InvalidArgument, with
-/// the area of the box.
+/// Whether box or polygon is small enough: known before a source is asked. Errors: InvalidArgument,
+/// with its area.
 Result<void> check_area(const Inputs& inputs, double max_km2);
 
 /// The source within limits: a selection or a reading that exceeds one ends with ResourceExhausted,

@@ -12,6 +12,8 @@ from service import BERLIN, PROGRAM, SMALL, delivered_names, is_closed, read_obj
 FILE = BERLIN / "3910_5817.gml"
 SRID = 25833
 COPIES = 10  # of the city, for jobs that last
+# Half of the small box.
+TRIANGLE = {"type": "Polygon", "coordinates": [[[13.400, 52.495], [13.405, 52.495], [13.405, 52.500], [13.400, 52.495]]]}
 
 
 def meshes(obj):
@@ -19,12 +21,16 @@ def meshes(obj):
     return "\n".join(line for line in obj.splitlines() if not line.startswith("#"))
 
 
-def setUpModule():
-    global cluster, from_file
+def run_over_file(setting, value):
     with tempfile.TemporaryDirectory(prefix="citymesh-e2e-") as folder:
         subprocess.run([PROGRAM, "run", "export-for-simulation", "--input", FILE, "--output", folder, "--overwrite",
-                        "--bbox", ",".join(map(str, SMALL["bbox"]))], check=True, stdout=subprocess.DEVNULL)
-        from_file = meshes(Path(folder, "model.obj").read_text(encoding="utf-8"))
+                        "--set", f"{setting}={json.dumps(value)}"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        return meshes(Path(folder, "model.obj").read_text(encoding="utf-8"))
+
+
+def setUpModule():
+    global cluster, from_file, triangle_from_file
+    from_file, triangle_from_file = run_over_file("bbox", SMALL), run_over_file("polygon", TRIANGLE)
     cluster = Cluster()
     unittest.addModuleCleanup(cluster.close)
 
@@ -82,6 +88,13 @@ class FromDatabase:
         self.assertEqual(cluster.sql(self.healed, count), before)
         lineage = f"SELECT count(*) FROM healed.{self.objects} WHERE lineage = '{job.rsplit('/', 1)[-1]}'"
         self.assertEqual(cluster.sql(self.healed, lineage), "0")
+
+    def test_a_polygon_gives_the_meshes_of_the_file(self):
+        self.assertLess(len(triangle_from_file), 0.8 * len(from_file))
+        report, obj = self.export_over_rest({"polygon": {"value": TRIANGLE}})
+        self.assertGreater(report["counts"]["delivered"], 10)
+        self.assertEqual(meshes(obj.decode()), triangle_from_file)
+        self.assertEqual(self.export_over_grpc({"polygon": TRIANGLE})[1], obj)
 
     def test_a_database_that_restarts_fails_at_most_the_jobs_that_read_it(self):
         for command in ("kill", "stop"):

@@ -115,7 +115,7 @@ TEST(Inputs, ABoxIsAsLargeAsItIsOnTheGround) {
     const auto inputs =
         canonical_inputs(kExport, R"({"bbox":{"bbox":)" + numbers + R"(,"crs":")" + crs + "\"}}");
     EXPECT_TRUE(inputs) << inputs.error().message;
-    return inputs ? inputs->values.bbox_area_km2 : -1;
+    return inputs ? inputs->values.area_km2 : -1;
   };
   // A tenth of a degree at 60° north: 11.1 km by 5.6 km.
   EXPECT_NEAR(area_km2("[10.0, 60.0, 10.1, 60.1]", "OGC:CRS84"), 61.7, 0.2);
@@ -123,7 +123,7 @@ TEST(Inputs, ABoxIsAsLargeAsItIsOnTheGround) {
   EXPECT_NEAR(area_km2("[60.0, 10.0, 60.1, 10.1]", "EPSG:4326"), 61.7, 0.2) << "latitude first";
   EXPECT_NEAR(area_km2("[390000, 5800000, 399000, 5809000]", "EPSG:25833"), 81, 1e-9);
   EXPECT_NEAR(area_km2("[0, 0, 30000, 30000]", "EPSG:2263"), 83.6, 0.1) << "feet";
-  EXPECT_EQ(canonical_inputs(kExport, "{}")->values.bbox_area_km2, 0);
+  EXPECT_EQ(canonical_inputs(kExport, "{}")->values.area_km2, 0);
 }
 
 TEST(Inputs, WrongValuesAreNamedWithWhatIsExpected) {
@@ -142,6 +142,67 @@ TEST(Inputs, WrongValuesAreNamedWithWhatIsExpected) {
   EXPECT_THAT(refused(R"({"crs":"EPSG:4326"})").message, HasSubstr("geographic"));
   EXPECT_THAT(refused(R"({"source_crs":"EPSG:99999999"})").message, HasSubstr("`source_crs`"));
   EXPECT_THAT(refused(R"({"axis_order":"up"})").message, HasSubstr("north_east"));
+}
+
+TEST(Inputs, APolygonIsARegionWithItsBox) {
+  const auto canonical =
+      canonical_inputs(kExport, R"({"polygon":{"type":"MultiPolygon","coordinates":[
+        [[[0,0],[100,0],[100,100],[0,100],[0,0]],[[10,10],[20,10],[20,20],[10,20],[10,10]]],
+        [[[200,0,5],[300,0,5],[300,100,5],[200,0,5]]]],"coordRefSys":"EPSG:25833"}})");
+  ASSERT_TRUE(canonical) << canonical.error().message;
+  const auto& box = *canonical->values.query.bbox;
+  EXPECT_EQ(box.crs.id, "EPSG:25833");
+  ASSERT_EQ(box.rings.size(), 3u);
+  EXPECT_EQ(box.rings[0].size(), 4u) << "not closed";
+  EXPECT_EQ(box.rings[2][1], (std::array<double, 2>{300, 0}));
+  EXPECT_EQ(box.max_x, 300);
+  EXPECT_EQ(box.min_y, 0);
+  EXPECT_NEAR(canonical->values.area_km2, (10'000 - 100 + 5'000) / 1e6, 1e-12);
+  const auto again = canonical_inputs(kExport, canonical->json);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->json, canonical->json);
+}
+
+TEST(Inputs, APolygonIsCrs84UnlessItSaysSoAndThenInItsAxisOrder) {
+  const auto degrees = canonical_inputs(
+      kExport,
+      R"({"polygon":{"type":"Polygon","coordinates":[[[13,52],[14,52],[14,53],[13,52]]]}})");
+  ASSERT_TRUE(degrees) << degrees.error().message;
+  EXPECT_EQ(degrees->values.query.bbox->crs.id, "OGC:CRS84");
+  EXPECT_EQ(degrees->values.query.bbox->min_x, 13);
+  const auto turned = canonical_inputs(
+      kExport, R"({"polygon":{"type":"Polygon","coordinates":[[[52,13],[52,14],[53,14],[52,13]]],
+               "coordRefSys":"EPSG:4326"}})");
+  ASSERT_TRUE(turned) << turned.error().message;
+  EXPECT_EQ(turned->values.query.bbox->rings, degrees->values.query.bbox->rings);
+  EXPECT_EQ(turned->values.area_km2, degrees->values.area_km2);
+}
+
+TEST(Inputs, WrongPolygonsAreNamed) {
+  const auto message = [](const std::string& polygon) {
+    return refused(R"({"polygon":)" + polygon + "}").message;
+  };
+  const auto of_ring = [&](const std::string& ring) {
+    return message(R"({"type":"Polygon","coordinates":[)" + ring + "]}");
+  };
+  EXPECT_THAT(message("[1,2]"), HasSubstr("GeoJSON Polygon or MultiPolygon"));
+  EXPECT_THAT(message(R"({"type":"Point","coordinates":[1,2]})"), HasSubstr("MultiPolygon"));
+  EXPECT_THAT(message(R"({"type":"Polygon","coordinates":[]})"), HasSubstr("at least one ring"));
+  EXPECT_THAT(message(R"({"type":"MultiPolygon","coordinates":7})"), HasSubstr("one polygon"));
+  EXPECT_THAT(of_ring("[[0,0],[1,0],[0,0]]"), HasSubstr("four positions"));
+  EXPECT_THAT(of_ring("[[0,0],[1,0],[1,1],[0,1]]"), HasSubstr("end where they begin"));
+  EXPECT_THAT(of_ring(R"([[0,0],[1,"x"],[1,1],[0,0]])"), HasSubstr("finite numbers"));
+  EXPECT_THAT(message(R"({"type":"Polygon","coordinates":[[[0,0],[1,0],[1,1],[0,0]]],"bbox":[]})"),
+              HasSubstr("`bbox`"));
+  EXPECT_THAT(refused(R"({"bbox":{"bbox":[1,2,3,4]},
+                "polygon":{"type":"Polygon","coordinates":[[[0,0],[1,0],[1,1],[0,0]]]}})")
+                  .message,
+              HasSubstr("both given"));
+  std::string many;
+  for (int i = 0; i < 10'001; ++i) many += "[0,0],";
+  many.pop_back();
+  EXPECT_EQ(refused(R"({"polygon":{"type":"Polygon","coordinates":[[)" + many + "]]}}").code,
+            ErrorCode::ResourceExhausted);
 }
 
 TEST(Inputs, WrongBoxesAreNamed) {

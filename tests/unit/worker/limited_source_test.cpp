@@ -57,9 +57,9 @@ TEST(LimitedSourceTest, WithoutLimitsNothingIsRefused) {
 TEST(LimitedSourceTest, ABoxThatIsTooLargeIsRefusedWithItsArea) {
   Inputs inputs;
   EXPECT_TRUE(check_area(inputs, 100)) << "no box";
-  inputs.bbox_area_km2 = 100;
+  inputs.area_km2 = 100;
   EXPECT_TRUE(check_area(inputs, 100));
-  inputs.bbox_area_km2 = 123.654;
+  inputs.area_km2 = 123.654;
   const auto refused = check_area(inputs, 100);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::InvalidArgument);
