@@ -86,7 +86,7 @@ if ! podman image exists localhost/citymesh-base; then
   rm -rf "$work/base"
 fi
 build() { nice buildah bud -q --layers --build-arg BASE=localhost/citymesh-base --build-arg JOBS="$jobs" "$@" "$root"; }
-# The stages of a Dockerfile from the last on, for a build whose earlier stages are done elsewhere.
+# The last stage of a Dockerfile, for which the stage `build` is an image that is there.
 last_stage_of() { awk '/^ARG BASE/ || /^FROM .* AS run/ { on = 1 } /^FROM .* AS build/ { on = 0 } on' "$1"; }
 
 if [ -n "$programs" ]; then
@@ -96,21 +96,21 @@ if [ -n "$programs" ]; then
   strip -o "$run/load" "$programs/tests/support/citydb/citymesh_citydb_load"
   buildah copy -q "$container" "$run/citymesh" /out/usr/bin/citymesh >/dev/null
   buildah copy -q "$container" "$run/load" /tools/usr/bin/citymesh_citydb_load >/dev/null
-  buildah commit -q --rm "$container" localhost/citymesh-programs >/dev/null
-  last_stage_of deploy/Dockerfile >"$run/Dockerfile"
-  last_stage_of deploy/try/tools.Dockerfile >"$run/tools.Dockerfile"
-  build --build-context build=container-image://localhost/citymesh-programs -f "$run/Dockerfile" -t localhost/citymesh
-  build --build-context build=container-image://localhost/citymesh-programs -f "$run/tools.Dockerfile" -t localhost/citymesh-try-tools
+  buildah commit -q --rm "$container" localhost/citymesh-build >/dev/null
+  tools=citymesh-build
 else
-  step "images, from source"
+  step "programs, from source"
   cache=()
   [ -z "$ccache" ] || cache=(--volume "$ccache:/ccache")
   build "${cache[@]}" -f deploy/Dockerfile --target build -t localhost/citymesh-build
-  step "image of the service"
-  build "${cache[@]}" -f deploy/Dockerfile -t localhost/citymesh
-  step "image of loader and tests"
-  build "${cache[@]}" -f deploy/try/tools.Dockerfile -t localhost/citymesh-try-tools
+  build "${cache[@]}" -f deploy/try/tools.Dockerfile --target build -t localhost/citymesh-tools-build
+  tools=citymesh-tools-build
 fi
+step "images of the service and of its tests"
+last_stage_of deploy/Dockerfile >"$run/Dockerfile"
+last_stage_of deploy/try/tools.Dockerfile >"$run/tools.Dockerfile"
+build --build-context build=container-image://localhost/citymesh-build -f "$run/Dockerfile" -t localhost/citymesh
+build --build-context "build=container-image://localhost/$tools" -f "$run/tools.Dockerfile" -t localhost/citymesh-try-tools
 step "images of databases and Prometheus"
 build -f deploy/try/citydb.Dockerfile -t localhost/citymesh-try-citydb
 build -f deploy/try/prometheus.Dockerfile -t localhost/citymesh-try-prometheus
