@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""The speed figures of the service: submissions, polling, event streams and downloads, on loopback, with load and service on the same
+"""The speed figures of the service: submissions, polling, event streams, downloads and dismissals, on loopback, with load and service on the same
 machine.
 
-    service.py --program build/release/services/apps/citymesh [--only submissions,polling,streams,downloads]
+    service.py --program build/release/services/apps/citymesh [--only submissions,polling,streams,downloads,dismissals]
 
 Prints a Markdown table with what was asked for, what was measured, and how. Needs wrk and curl.
 """
@@ -10,6 +10,7 @@ import argparse
 import asyncio
 import json
 import os
+import random
 import resource
 import shutil
 import sqlite3
@@ -25,7 +26,7 @@ import load  # noqa: E402
 import service as harness  # noqa: E402
 
 MEGABYTE = 1_000_000
-MEASURES = ("submissions", "polling", "streams", "downloads")
+MEASURES = ("submissions", "polling", "streams", "downloads", "dismissals")
 OPEN_FILES = 4096
 
 
@@ -174,6 +175,31 @@ class Bench:
         finally:
             service.kill()
 
+    def dismissals(self):
+        """Of jobs at random moments of their run: how long the worker goes on, and what is left in memory."""
+        service = self.start()
+        memory, moment = Memory(service.process), random.Random(1)
+        try:
+            times, before_mb = [], None
+            for _ in range(self.arguments.dismissals):
+                job = self.busy_job(service)
+                time.sleep(moment.uniform(0, 0.5))
+                started = time.monotonic()
+                status = service.send("DELETE", job).json()["status"]
+                if status != "dismissed":
+                    status = service.wait(job)["status"]
+                if status == "dismissed":
+                    times.append(time.monotonic() - started)
+                before_mb = before_mb or memory.mb("VmRSS")
+            times.sort()
+            p50, longest = 1000 * load.percentile(times, 0.5), 1000 * times[-1]
+            grown_mb = memory.mb("VmRSS") - before_mb
+            self.row(f"{self.arguments.dismissals} jobs dismissed while they run", "each within 100 ms",
+                     f"p50 {p50:.0f} ms, longest {longest:.0f} ms, {len(times)} dismissed; {grown_mb:+.0f} MB since the first",
+                     longest < 100 and len(times) == self.arguments.dismissals)
+        finally:
+            service.kill()
+
 
 def enlarge(state, job_id, name, size):
     """Makes a result of a finished job so large, by its own content again and again, as if it had been written like that."""
@@ -214,6 +240,7 @@ def main():
     parser.add_argument("--hold_s", type=int, default=10, help="streams are held open for so long")
     parser.add_argument("--downloads", type=int, default=32)
     parser.add_argument("--megabytes", type=int, default=500, help="of a download")
+    parser.add_argument("--dismissals", type=int, default=50)
     parser.add_argument("--city_mb", type=int, default=100, help="size of the city that keeps the worker busy")
     parser.add_argument("--folder", type=Path, help="on the disk that the stores are to use; default: that of temporary files")
     arguments = parser.parse_args()
