@@ -12,7 +12,7 @@ namespace {
 class Hosts {
  public:
   Hosts(const TriangleMesh& mesh, const std::vector<std::size_t>& surface_of_face,
-        const std::vector<Boundary>& surfaces)
+        const std::vector<BoundarySurface>& surfaces)
       : mesh_(mesh) {
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
       const std::size_t s = surface_of_face[f];
@@ -22,7 +22,7 @@ class Hosts {
   }
 
   /// kNoBoundary: no other surface touches it.
-  std::size_t host_of(const Boundary& opening) const {
+  std::size_t host_of(const BoundarySurface& opening) const {
     std::map<std::size_t, std::size_t> edges;
     for (const std::size_t f : opening.faces)
       for_each_edge(f, [&](std::uint32_t a, std::uint32_t b) {
@@ -99,7 +99,7 @@ class Grouping {
   void place_openings() {
     const std::size_t count = all_.surfaces.size();
     if (std::none_of(all_.surfaces.begin(), all_.surfaces.end(),
-                     [](const Boundary& surface) { return is_opening(surface.type); }))
+                     [](const BoundarySurface& surface) { return is_opening(surface.type); }))
       return;
     const Hosts hosts(mesh_, all_.surface_of_face, all_.surfaces);
     for (std::size_t s = 0; s < count; ++s) {

@@ -15,7 +15,7 @@ inline constexpr std::size_t kNoBoundary = ~std::size_t{0};
 bool is_opening(SurfaceType type);
 
 /// A boundary surface: faces of one type and source surface, made by one rung.
-struct Boundary {
+struct BoundarySurface {
   SurfaceType type = SurfaceType::Unknown;
   std::string id{};
   std::string_view made_by{};
@@ -26,7 +26,7 @@ struct Boundary {
 /// The faces of a body as CityGML has them: polygons with ids, those of known type in surfaces.
 struct Boundaries {
   int lod = 2;  ///< that the version can hold
-  std::vector<Boundary> surfaces{};
+  std::vector<BoundarySurface> surfaces{};
   std::vector<std::size_t> surface_of_face{};  ///< kNoBoundary: the version has none for its type
   std::vector<std::string> polygon_ids{};      ///< of each face
 };

@@ -27,7 +27,7 @@ class Builder {
   std::string boundaries() {
     std::string xml;
     const std::string_view property = version_ == CityGml::V2 ? "bldg:boundedBy" : "boundary";
-    for (const Boundary& surface : boundaries_.surfaces) {
+    for (const BoundarySurface& surface : boundaries_.surfaces) {
       if (is_opening(surface.type)) continue;
       xml += '<';
       xml += property;
@@ -77,7 +77,7 @@ class Builder {
     }
   }
 
-  void append_surface(std::string& xml, const Boundary& surface) {
+  void append_surface(std::string& xml, const BoundarySurface& surface) {
     const std::string name(element(surface.type));
     const std::string multi =
         (version_ == CityGml::V3 ? "lod" : "bldg:lod") + std::to_string(lod_) + "MultiSurface";

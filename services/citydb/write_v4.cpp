@@ -121,7 +121,7 @@ class WriterV4 final : public VersionWriter {
       }
     add_cityobject(id, class_id, stored_id(object), box, rung);
     if (!boundaries) return;
-    for (const Boundary& surface : boundaries->surfaces)
+    for (const BoundarySurface& surface : boundaries->surfaces)
       if (!is_opening(surface.type))
         add_surface(*object.body, *boundaries, surface, id, installation);
   }
@@ -186,7 +186,7 @@ class WriterV4 final : public VersionWriter {
   // ---- boundary surfaces -------------------------------------------------------------------
 
   std::int64_t add_multi_surface(const Body& body, const Boundaries& boundaries,
-                                 const Boundary& surface, std::int64_t owner) {
+                                 const BoundarySurface& surface, std::int64_t owner) {
     if (surface.faces.empty()) return 0;
     const auto root = surface_ids_.take();
     add_inner(root, 0, root, fmt::format("cm.{}.m", owner), {}, owner);
@@ -195,7 +195,7 @@ class WriterV4 final : public VersionWriter {
     return root;
   }
 
-  std::int64_t add_thing(const Body& body, const Boundary& surface) {
+  std::int64_t add_thing(const Body& body, const BoundarySurface& surface) {
     const auto id = object_ids_.take();
     Box3 box;
     const GeometryText text(body.mesh, stamp_.origin, stamp_.srid);
@@ -205,7 +205,7 @@ class WriterV4 final : public VersionWriter {
     return id;
   }
 
-  void add_surface(const Body& body, const Boundaries& boundaries, const Boundary& surface,
+  void add_surface(const Body& body, const Boundaries& boundaries, const BoundarySurface& surface,
                    std::int64_t owner, bool of_installation) {
     const auto id = add_thing(body, surface);
     const auto geometry = add_multi_surface(body, boundaries, surface, id);
@@ -217,7 +217,7 @@ class WriterV4 final : public VersionWriter {
                                               : thematic_surfaces_.null();
     thematic_surfaces_.end();
     for (const std::size_t o : surface.openings) {
-      const Boundary& opening = boundaries.surfaces[o];
+      const BoundarySurface& opening = boundaries.surfaces[o];
       const auto opening_id = add_thing(body, opening);
       const auto polygons = add_multi_surface(body, boundaries, opening, opening_id);
       openings_.number(opening_id).number(class_of(class_name_v4(opening.type)));

@@ -145,7 +145,7 @@ class WriterV5 final : public VersionWriter {
     const Boundaries boundaries = boundaries_of(CityGml::V3, object, ids);
     add_solid(*object.body, boundaries, owner, ids);
     std::size_t surfaces = 0;
-    for (const Boundary& surface : boundaries.surfaces)
+    for (const BoundarySurface& surface : boundaries.surfaces)
       if (!is_opening(surface.type))
         contain(owner, "core", "boundary",
                 add_surface(*object.body, boundaries, surface, surfaces, ids));
@@ -177,8 +177,8 @@ class WriterV5 final : public VersionWriter {
     add_geometry_row(owner, boundaries.lod, "Solid", text.take(), properties.take());
   }
 
-  std::int64_t add_surface(const Body& body, const Boundaries& boundaries, const Boundary& surface,
-                           std::size_t& surfaces, BodyIds& ids) {
+  std::int64_t add_surface(const Body& body, const Boundaries& boundaries,
+                           const BoundarySurface& surface, std::size_t& surfaces, BodyIds& ids) {
     const auto id = feature_ids_.take();
     GeometryText text(body.mesh, stamp_.origin, stamp_.srid);
     Box3 box;

@@ -130,6 +130,34 @@ def headers_are_read_once(tree):
                 yield f"{name}: has no #pragma once"
 
 
+NAMESPACE = re.compile(r"^namespace(?: ([\w:]+))? {$")
+TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)(?: final)?(?: : [^;]*)? {")
+
+
+def types_at_namespace_level(text):
+    """Names with their namespaces; what is in a namespace without a name cannot clash."""
+    within = []
+    for line in text.splitlines():
+        if opened := NAMESPACE.match(line):
+            within.append(opened[1] or "")
+        elif line.startswith("}  // namespace"):
+            del within[-1:]
+        elif (found := TYPE.match(line)) and "" not in within:
+            yield "::".join([*within, found[1]])
+
+
+def no_two_types_share_a_name(tree):
+    """Two definitions of one name are no error to a compiler and a linker, but to the running program."""
+    defined = {}
+    for house in ("core", "services"):
+        for name, text in tree.sources(house):
+            for type_name in types_at_namespace_level(text):
+                defined.setdefault(type_name, []).append(name)
+    for type_name, names in defined.items():
+        if len(names) > 1:
+            yield f"{type_name} is defined in {' and in '.join(names)}"
+
+
 def every_stage_has_its_door(tree):
     for room in allowed_rooms(tree, "core"):
         if room not in ROOMS_WITHOUT_DOOR and f"core/{room}/{room}.h" not in tree.texts:
@@ -227,6 +255,7 @@ RULES = (
     third_party_headers_stay_in_sources,
     own_headers_are_included_from_the_root,
     headers_are_read_once,
+    no_two_types_share_a_name,
     every_stage_has_its_door,
     link_lists_match_the_includes,
     tests_carry_the_kind_of_their_folder,

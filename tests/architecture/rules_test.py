@@ -55,6 +55,14 @@ class Rules(unittest.TestCase):
     def test_a_room_without_a_line_in_the_table_is_found(self):
         self.expect("rooms_use_only", "core/attic", {"core/attic/attic.h": "#pragma once\n"})
 
+    def test_two_types_of_one_name_are_found(self):
+        one = "#pragma once\nnamespace citymesh {\nstruct Edge {\n};\n}  // namespace citymesh\n"
+        hidden = "namespace citymesh {\nnamespace {\nstruct Edge {\n};\n}  // namespace\n}  // namespace citymesh\n"
+        other = one.replace("citymesh", "citymesh::jobs")
+        self.expect("no_two_types", "citymesh::Edge is defined in core/heal/edge.h and in services/jobs/edge.h",
+                    {"core/heal/edge.h": one, "services/jobs/edge.h": one.replace("struct Edge", "class Edge final : public Base")})
+        self.assertEqual(judged({"core/heal/edge.h": one, "core/heal/b.cpp": hidden, "services/jobs/edge.h": other}), [])
+
     def test_a_core_that_knows_services_is_found(self):
         self.expect("the_core_knows", "services/jobs/job.h", {"core/heal/b.cpp": '#include "services/jobs/job.h"\n'})
 
