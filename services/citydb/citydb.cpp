@@ -1,5 +1,7 @@
 #include "services/citydb/citydb.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <future>
 #include <optional>
@@ -82,6 +84,9 @@ class CityDbSource final : public CitySource {
     auto plan = source::make_plan(catalogue, asked, {}, context);
     if (!plan) return plan.error();
     auto selection = std::move(plan->selection);
+    if (query.bbox)
+      if (auto warned = warn_of_unfindable(*session, selection, context); !warned)
+        return warned.error();
     session->facts = catalogue.facts();
     for (auto& file : plan->files) {
       session->srs = std::move(file.srs);
@@ -90,6 +95,19 @@ class CityDbSource final : public CitySource {
     }
     selection.details = std::move(session);
     return selection;
+  }
+
+  Result<void> warn_of_unfindable(const Session& session, Selection& selection,
+                                  const RunContext& context) const {
+    const auto counted =
+        (*session.lease)->run(session.schema->without_envelope(session.instance), context.stop);
+    if (!counted) return counted.error();
+    if (const auto buildings = counted->integer(0, 0); buildings > 0)
+      selection.warnings.push_back(fmt::format(
+          "buildings of the database without an envelope, which no box finds: {}; have 3DCityDB "
+          "compute what is missing ({})",
+          buildings, session.schema->sql_for_envelopes(options_.schema)));
+    return {};
   }
 
   Result<void> read_chunks(Session& session, const BuildingQuery& query, const Selection& selection,

@@ -67,6 +67,12 @@ class Schema {
   /// One row: the number of present top-level buildings and the extent of their envelopes (least
   /// x, y, z, greatest x, y, z).
   virtual postgres::Statement extent(const Instance& instance) const = 0;
+  /// One row: the number of present top-level buildings without an envelope, which no box finds.
+  /// None are counted, which is cheap, where the statistics of the database know of no object
+  /// without one.
+  virtual postgres::Statement without_envelope(const Instance& instance) const = 0;
+  /// The SQL by which an operator has 3DCityDB compute the envelopes that are missing.
+  virtual std::string sql_for_envelopes(const std::string& schema) const = 0;
   /// Those that have, or a part of which has, one of these gml:ids.
   virtual postgres::Statement candidates_by_id(const Instance& instance,
                                                std::span<const std::string> gml_ids) const = 0;

@@ -36,6 +36,12 @@ constexpr const char* kExtent =
     "SELECT e.n, ST_XMin(e.b), ST_YMin(e.b), ST_ZMin(e.b), ST_XMax(e.b), ST_YMax(e.b), ST_ZMax(e.b)"
     " FROM (SELECT count(*) AS n, ST_3DExtent(c.envelope) AS b FROM cityobject c"
     " WHERE c.objectclass_id = ANY($1::int[]) AND c.termination_date IS NULL) e";
+// A GiST index has to be read from end to end for what has no box: the statistics decide whether.
+constexpr const char* kWithoutEnvelope =
+    "SELECT count(*) FROM cityobject c WHERE c.objectclass_id = ANY($1::int[])"
+    " AND c.termination_date IS NULL AND c.envelope IS NULL"
+    " AND coalesce((SELECT max(s.null_frac) > 0 FROM pg_stats s WHERE s.attname = 'envelope'"
+    " AND s.tablename = 'cityobject' AND s.schemaname = current_schema()), true)";
 constexpr const char* kById =
     "SELECT c.id, c.gmlid, ST_XMin(c.envelope), ST_YMin(c.envelope), ST_ZMin(c.envelope),"
     " ST_XMax(c.envelope), ST_YMax(c.envelope), ST_ZMax(c.envelope)"
@@ -494,6 +500,14 @@ class SchemaV4 final : public Schema {
 
   Statement extent(const Instance& instance) const override {
     return {kExtent, {postgres::array_of(instance.ids_of(ObjectKind::Building))}};
+  }
+
+  Statement without_envelope(const Instance& instance) const override {
+    return {kWithoutEnvelope, {postgres::array_of(instance.ids_of(ObjectKind::Building))}};
+  }
+
+  std::string sql_for_envelopes(const std::string& schema) const override {
+    return fmt::format("SELECT {}.get_envelope_cityobjects(0, 1, 1)", schema);
   }
 
   Statement candidates_by_id(const Instance& instance,

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "services/citydb/chunk_v5.h"
@@ -25,6 +27,12 @@ constexpr const char* kExtent =
     "SELECT count(*), min(ST_XMin(f.envelope)), min(ST_YMin(f.envelope)), min(ST_ZMin(f.envelope)),"
     " max(ST_XMax(f.envelope)), max(ST_YMax(f.envelope)), max(ST_ZMax(f.envelope))"
     " FROM feature f WHERE f.objectclass_id = ANY($1::int[]) AND f.termination_date IS NULL";
+// A GiST index has to be read from end to end for what has no box: the statistics decide whether.
+constexpr const char* kWithoutEnvelope =
+    "SELECT count(*) FROM feature f WHERE f.objectclass_id = ANY($1::int[])"
+    " AND f.termination_date IS NULL AND f.envelope IS NULL"
+    " AND coalesce((SELECT max(s.null_frac) > 0 FROM pg_stats s WHERE s.attname = 'envelope'"
+    " AND s.tablename = 'feature' AND s.schemaname = current_schema()), true)";
 // OFFSET 0: see chunk_v5.cpp.
 constexpr const char* kById =
     "WITH RECURSIVE up(id) AS (SELECT f.id FROM feature f WHERE f.objectid = ANY($2::text[])"
@@ -60,6 +68,17 @@ class SchemaV5 final : public Schema {
 
   Statement extent(const Instance& instance) const override {
     return {kExtent, {postgres::array_of(instance.ids_of(ObjectKind::Building))}};
+  }
+
+  Statement without_envelope(const Instance& instance) const override {
+    return {kWithoutEnvelope, {postgres::array_of(instance.ids_of(ObjectKind::Building))}};
+  }
+
+  std::string sql_for_envelopes(const std::string& schema) const override {
+    return fmt::format(
+        "SELECT citydb_pkg.get_feature_envelope(id, '{0}', 0, 1) FROM {0}.feature"
+        " WHERE envelope IS NULL",
+        schema);
   }
 
   Statement candidates_by_id(const Instance& instance,

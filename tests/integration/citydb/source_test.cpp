@@ -91,6 +91,27 @@ TEST_F(CityDbSource, ABoxChoosesWhatItChoosesInTheFile) {
   EXPECT_THAT(sizes, testing::IsSupersetOf({0u, 1u, 4u, 9u, 10u}));
 }
 
+TEST_F(CityDbSource, BuildingsThatNoBoxFindsAreTold) {
+  const auto query = box(13.38, 52.48, 13.42, 52.51);
+  const auto all = source_->select(query, {});
+  ASSERT_TRUE(all) << all.error().message;
+  EXPECT_THAT(all->warnings, testing::IsEmpty());
+  run("UPDATE citydb.cityobject SET envelope = NULL WHERE id IN (SELECT id FROM citydb.cityobject"
+      " WHERE objectclass_id = 26 ORDER BY id LIMIT 2)");
+  run("ANALYZE");
+  const auto found = source_->select(query, {});
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->buildings + 2, all->buildings);
+  EXPECT_THAT(
+      found->warnings,
+      ElementsAre("buildings of the database without an envelope, which no box finds: 2; have "
+                  "3DCityDB compute what is missing (SELECT "
+                  "citydb.get_envelope_cityobjects(0, 1, 1))"));
+  const auto everything = source_->select({}, {});
+  ASSERT_TRUE(everything) << everything.error().message;
+  EXPECT_THAT(everything->warnings, testing::IsEmpty());
+}
+
 TEST_F(CityDbSource, IdsOfBuildingsAndPartsChooseAndMissingOnesAreTold) {
   const auto part = value(
       "SELECT c.gmlid FROM citydb.building b JOIN citydb.cityobject c ON c.id = b.id"
