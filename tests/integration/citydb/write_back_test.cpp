@@ -79,8 +79,14 @@ class WriteBackTest : public citydb_support::CityDbTest,
                  " AND lineage = '" + lineage + "'");
   }
 
-  std::unique_ptr<WriteBackStore> store() {
-    auto opened = open_write_back({.url = url_, .schema = "healed", .source_schema = "citydb"});
+  std::string url_of(const std::string& user) const {
+    return url_ + (url_.find('?') == std::string::npos ? "?" : "&") + "user=" + user +
+           "&password=x";
+  }
+
+  std::unique_ptr<WriteBackStore> store(const std::string& url = {}) {
+    auto opened = open_write_back(
+        {.url = url.empty() ? url_ : url, .schema = "healed", .source_schema = "citydb"});
     EXPECT_TRUE(opened) << opened.error().message;
     return opened ? *std::move(opened) : nullptr;
   }
@@ -216,15 +222,65 @@ TEST_P(WriteBackTest, AMissingRightIsSaidWithWhatToGrant) {
   execute("GRANT USAGE ON SCHEMA healed TO only_reads");
   execute("GRANT SELECT ON ALL TABLES IN SCHEMA healed TO only_reads");
   const auto refused =
-      open_write_back({.url = url_ + (url_.find('?') == std::string::npos ? "?" : "&") +
-                              "user=only_reads&password=x",
-                       .schema = "healed",
-                       .source_schema = "citydb"});
+      open_write_back({.url = url_of("only_reads"), .schema = "healed", .source_schema = "citydb"});
   execute("DROP OWNED BY only_reads; DROP ROLE only_reads");
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::PermissionDenied);
   EXPECT_THAT(refused.error().message, HasSubstr("GRANT USAGE on the schema and SELECT, INSERT"));
   EXPECT_THAT(refused.error().message, HasSubstr("--write_back_url"));
+}
+
+/// The block of SQL in the documentation that makes the role `citymesh_writer`, for another role
+/// with the password x.
+std::string documented_grants(const std::string& role) {
+  std::ifstream in(CITYMESH_OPERATIONS);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  const auto begin = text.find("CREATE ROLE citymesh_writer");
+  if (begin == std::string::npos) return "no such role in " CITYMESH_OPERATIONS;
+  auto sql = text.substr(begin, text.find("```", begin) - begin);
+  const std::string name = "citymesh_writer", password = "'…'";
+  for (auto at = sql.find(name); at != std::string::npos; at = sql.find(name, at))
+    sql.replace(at, name.size(), role);
+  return sql.replace(sql.find(password), password.size(), "'x'");
+}
+
+TEST_P(WriteBackTest, TheDocumentedGrantsAreEnoughToWriteAndWithdrawAndNothingElse) {
+  execute("DROP ROLE IF EXISTS as_documented");
+  execute(documented_grants("as_documented"));
+  {
+    const auto store = this->store(url_of("as_documented"));
+    ASSERT_TRUE(store);
+    for (const auto* job : {"job-1", "job-1", "job-2"}) {
+      const auto done = work(*store, job);
+      EXPECT_TRUE(done) << done.error().message;
+    }
+    EXPECT_NE(current_of("job-2"), "0");
+    const auto withdrawn = store->withdraw("job-2");
+    EXPECT_TRUE(withdrawn) << withdrawn.error().message;
+    EXPECT_NE(current_of("job-1"), "0");
+    auto database = Database::open(url_of("as_documented"));
+    const auto table = is_v5() ? "citydb.feature" : "citydb.cityobject";
+    const auto wiped = database->run(std::string("DELETE FROM ") + table);
+    EXPECT_FALSE(wiped);
+    EXPECT_THAT(wiped ? "" : wiped.error().message, HasSubstr("permission denied"));
+  }
+  execute("DROP OWNED BY as_documented; DROP ROLE as_documented");
+}
+
+TEST_P(WriteBackTest, RowsOfOthersKeepTheirIds) {
+  const citydb_support::Schema healed{.major = GetParam().major,
+                                      .minor = GetParam().minor,
+                                      .srid = GetParam().srid,
+                                      .name = "healed"};
+  ASSERT_TRUE(citydb_support::load(url_, {.schema = healed}, kTile));
+  const auto loaded = std::stoi(rows());
+  const auto store = this->store();
+  ASSERT_TRUE(store);
+  const auto done = work(*store, "job-1");
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_GT(std::stoi(rows()), loaded);
+  EXPECT_EQ(value("SELECT count(*) FROM " + objects() + " WHERE lineage IS NULL"),
+            std::to_string(loaded));
 }
 
 TEST_P(WriteBackTest, AnotherCrsThanThatOfTheDatabaseIsRefused) {

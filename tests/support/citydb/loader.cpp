@@ -118,6 +118,20 @@ Result<void> read_into(Store& store, const Document& document, const LoadOptions
   return store.flush();
 }
 
+/// The ids were not drawn from the sequences, which go on behind them.
+Result<void> advance_sequences(Database& database, const Schema& schema) {
+  const auto tables = schema.major == 4
+                          ? std::vector<std::string>{"cityobject", "surface_geometry"}
+                          : std::vector<std::string>{"feature", "geometry_data", "property"};
+  for (const auto& table : tables) {
+    const auto name = identifier(schema.name) + "." + table;
+    const auto set =
+        database.value("SELECT setval(" + literal(name + "_seq") + ", max(id)) FROM " + name);
+    if (!set) return set.error();
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<LoadReport> load(const std::string& url, const LoadOptions& options, const fs::path& file) {
@@ -131,6 +145,8 @@ Result<LoadReport> load(const std::string& url, const LoadOptions& options, cons
                                                : open_store_v5(*database, options, report);
   if (!store) return store.error();
   if (auto stored = read_into(**store, *document, options, report); !stored) return stored.error();
+  if (auto advanced = advance_sequences(*database, options.schema); !advanced)
+    return advanced.error();
   if (auto ended = database->run("COMMIT"); !ended) return ended.error();
   return report;
 }
