@@ -26,7 +26,8 @@ class RpcAccessTest : public testing::Test {
  protected:
   RpcAccessTest() {
     std::ofstream keys(folder_ / "keys");
-    for (const auto* key : {&city_, &reader_, &port_, &operator_}) keys << key->line << '\n';
+    for (const auto* key : {&city_, &reader_, &port_, &writer_, &operator_})
+      keys << key->line << '\n';
     keys.close();
     access_ = *Access::open({.api_keys = folder_ / "keys"});
     server_.emplace(jobs_, metrics_, RpcOptions{.port = 0, .access = access_.get()});
@@ -39,12 +40,12 @@ class RpcAccessTest : public testing::Test {
   static void show(grpc::ClientContext& context, const NewApiKey* key) {
     if (key != nullptr) context.AddMetadata("authorization", "Bearer " + key->key);
   }
-  std::pair<StatusCode, v1::Job> submit(const NewApiKey* key) {
+  std::pair<StatusCode, v1::Job> submit(const NewApiKey* key, const std::string& inputs = "{}") {
     grpc::ClientContext context;
     show(context, key);
     v1::SubmitRequest request;
     request.set_process("export-for-simulation");
-    request.set_inputs_json("{}");
+    request.set_inputs_json(inputs);
     v1::Job job;
     const auto status = stub_->Submit(&context, request, &job);
     return {status.error_code(), job};
@@ -98,6 +99,7 @@ class RpcAccessTest : public testing::Test {
   NewApiKey city_ = *make_api_key("city", Role::Submit);
   NewApiKey reader_ = *make_api_key("city", Role::ReadOwn);
   NewApiKey port_ = *make_api_key("port", Role::Submit);
+  NewApiKey writer_ = *make_api_key("writer", Role::WriteBack);
   NewApiKey operator_ = *make_api_key("operator", Role::Admin);
   std::unique_ptr<EmbeddedStore> store_ = *EmbeddedStore::open(folder_ / "jobs.sqlite");
   std::unique_ptr<FolderResultStore> results_ = *FolderResultStore::open(folder_ / "results");
@@ -153,6 +155,14 @@ TEST_F(RpcAccessTest, WhoOnlyReadsNeitherSubmitsNorDismisses) {
   EXPECT_EQ(submit(&reader_).first, StatusCode::PERMISSION_DENIED);
   EXPECT_EQ(dismiss(&reader_, id), StatusCode::PERMISSION_DENIED);
   EXPECT_EQ(get(&reader_, id), StatusCode::OK);
+}
+
+TEST_F(RpcAccessTest, WhoMaySubmitDoesNotWriteBackWithoutThatRole) {
+  constexpr const char* kInputs = R"({"write_back": true})";
+  EXPECT_EQ(submit(&city_, kInputs).first, StatusCode::PERMISSION_DENIED);
+  EXPECT_EQ(list(&operator_).second, 0u);
+  EXPECT_EQ(submit(&writer_, kInputs).first, StatusCode::OK);
+  EXPECT_EQ(submit(&city_, R"({"write_back": false})").first, StatusCode::OK);
 }
 
 TEST(RpcOverTls, IsSpokenWithTheCertificateAndNotWithout) {
