@@ -162,9 +162,14 @@ class Builder {
 
     FeatureBuilder::Owner owner = due.owner;
     if (is_surface(link)) {
-      owner.surface =
-          builder_.add_surface(owner.object, surface_type(rows.integer(due.row, kClass)),
-                               rows.text(due.row, kGmlId), owner.surface);
+      const auto known = instance_.classes.find(rows.integer(due.row, kClass));
+      if (known == instance_.classes.end()) return {};
+      if (!known->second.surface) {
+        builder_.leave_out(owner.object, known->second.name);
+        return {};
+      }
+      owner.surface = builder_.add_surface(owner.object, *known->second.surface,
+                                           rows.text(due.row, kGmlId), owner.surface);
     } else {
       const auto kind = link == Link::Root   ? ObjectKind::Building
                         : link == Link::Part ? ObjectKind::BuildingPart
@@ -179,12 +184,6 @@ class Builder {
     for (auto child = children.rbegin(); child != children.rend(); ++child)
       due_.push_back({*child, owner});
     return {};
-  }
-
-  SurfaceType surface_type(std::int64_t object_class) const {
-    const auto known = instance_.classes.find(object_class);
-    if (known == instance_.classes.end() || !known->second.surface) return SurfaceType::Unknown;
-    return *known->second.surface;
   }
 
   Result<void> add_geometry(int row, FeatureBuilder::Owner owner) {

@@ -31,6 +31,10 @@ void FeatureBuilder::report(std::int32_t index, int code, std::string where) {
   if (issues.size() < kMaxIssues) issues.push_back({code, std::move(where)});
 }
 
+void FeatureBuilder::leave_out(std::int32_t index, std::string_view name) {
+  source::count_name(object(index).skipped_ade_elements, name);
+}
+
 std::int32_t FeatureBuilder::add_surface(std::int32_t index, SurfaceType type,
                                          std::string_view gml_id, std::int32_t outer) {
   auto& surfaces = object(index).surfaces;

@@ -29,6 +29,8 @@ class FeatureBuilder {
   source::RawObject& object(std::int32_t index);
   void report(std::int32_t object, int code, std::string where);
 
+  /// What is no surface of ours, by the name of its class: counted, and left out.
+  void leave_out(std::int32_t object, std::string_view name);
   /// A boundary surface of an object, or an opening in its surface `outer`; its index there.
   std::int32_t add_surface(std::int32_t object, SurfaceType type, std::string_view gml_id,
                            std::int32_t outer = -1);

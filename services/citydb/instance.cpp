@@ -15,15 +15,18 @@ using postgres::Statement;
 
 /// Version 4 has the class names of CityGML with the module in them: OuterBuildingFloorSurface.
 ObjectClass class_of(std::string_view name) {
-  if (name == "Building") return {.kind = ObjectKind::Building};
-  if (name == "BuildingPart") return {.kind = ObjectKind::BuildingPart};
-  if (name == "BuildingInstallation") return {.kind = ObjectKind::BuildingInstallation};
+  ObjectClass found{.name = std::string(name)};
+  if (name == "Building") found.kind = ObjectKind::Building;
+  if (name == "BuildingPart") found.kind = ObjectKind::BuildingPart;
+  if (name == "BuildingInstallation") found.kind = ObjectKind::BuildingInstallation;
+  if (found.kind) return found;
   std::string plain(name);
   constexpr std::string_view kModule = "Building";
   if (const auto at = plain.find(kModule); at != std::string::npos) plain.erase(at, kModule.size());
   if (plain == "WindowSurface") plain = "Window";  // as CityGML 3.0 calls them
   if (plain == "DoorSurface") plain = "Door";
-  return {.surface = surface_type_from(plain)};
+  found.surface = surface_type_from(plain);
+  return found;
 }
 
 Error no_citydb(const postgres::Connection& connection, const std::string& schema,
@@ -90,8 +93,7 @@ Result<Instance> look_at(postgres::Connection& connection, const std::string& sc
   const auto classes = connection.run(Statement{"SELECT id, classname FROM objectclass"}, stop);
   if (!classes) return classes.error();
   for (int row = 0; row < classes->size(); ++row)
-    if (const auto known = class_of(classes->text(row, 1)); known.kind || known.surface)
-      instance.classes.emplace(classes->integer(row, 0), known);
+    instance.classes.emplace(classes->integer(row, 0), class_of(classes->text(row, 1)));
   if (instance.ids_of(ObjectKind::Building).empty())
     return no_citydb(connection, schema, "has no class Building in objectclass");
   return instance;

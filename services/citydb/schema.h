@@ -20,6 +20,7 @@ namespace citymesh::citydb {
 
 /// What an object of the database is to us, by its class.
 struct ObjectClass {
+  std::string name{};
   std::optional<ObjectKind> kind{};  ///< none: a surface, or nothing that we read
   std::optional<SurfaceType> surface{};
 };

@@ -403,9 +403,12 @@ class Builder {
     for (int row = first; row < last; ++row) {
       const auto object = object_of(rows, row, kOwner);
       const auto* known = class_of(rows, row);
-      if (object < 0) continue;
-      const auto type = known != nullptr && known->surface ? *known->surface : SurfaceType::Unknown;
-      const auto surface = builder_.add_surface(object, type, rows.text(row, kGmlId));
+      if (object < 0 || known == nullptr) continue;
+      if (!known->surface) {
+        builder_.leave_out(object, known->name);
+        continue;
+      }
+      const auto surface = builder_.add_surface(object, *known->surface, rows.text(row, kGmlId));
       walls_.emplace(rows.integer(row, kId), FeatureBuilder::Owner{object, surface});
       for (int i = 0; i < 3; ++i)
         if (!rows.null(row, kLod2Surface + i))
@@ -419,8 +422,12 @@ class Builder {
     for (int row = first; row < last; ++row) {
       const auto wall = walls_.find(rows.integer(row, kWall));
       const auto* known = class_of(rows, row);
-      if (wall == walls_.end() || known == nullptr || !known->surface) continue;
+      if (wall == walls_.end() || known == nullptr) continue;
       const auto [object, outer] = wall->second;
+      if (!known->surface) {
+        builder_.leave_out(object, known->name);
+        continue;
+      }
       const FeatureBuilder::Owner owner{
           object, builder_.add_surface(object, *known->surface, rows.text(row, kGmlId), outer)};
       for (int i = 0; i < 2; ++i) {

@@ -7,11 +7,15 @@
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
 
 #include "services/citydb/citydb.h"
 #include "tests/integration/citydb/reading.h"
 #include "tests/support/citydb/citydb_test.h"
 #include "tests/support/citydb/loader.h"
+#include "tests/support/temp_folder.h"
 
 namespace citymesh {
 namespace {
@@ -106,34 +110,88 @@ TEST_P(StoredModel, IsTheModelOfTheFile) {
   }
 }
 
-class HouseByHand : public citydb_support::CityDbTest {};
-
 /// Rows that were written by hand from the description of the schema, not by our loader.
-TEST_F(HouseByHand, IsTheHouseOfTheFile) {
-  auto from_file = open_files({CITYMESH_CITYDB_FIXTURE}, {});
-  ASSERT_TRUE(from_file);
-  BuildingQuery query;
-  query.bbox = RequestBox{499'900, 5'699'900, 500'100, 5'700'100, {}, Crs{"EPSG:25832"}};
-  query.crs = Crs{"EPSG:25832"};
-  const auto expected = read_model(**from_file, query);
-  ASSERT_TRUE(expected) << expected.error().message;
-  ASSERT_EQ(expected->size(), 1u);
-  for (const auto& [major, sql_file] :
-       {std::pair{4, "fixture_v4.sql"}, std::pair{5, "fixture_v5.sql"}}) {
-    const auto url = server().create_citydb({.major = major, .srid = 25832});
-    ASSERT_TRUE(url) << url.error().message;
-    auto database = citydb_support::Database::open(*url);
-    const auto sql = citydb_support::citydb_file(sql_file);
-    ASSERT_TRUE(database && sql);
-    const auto stored = database->run(*sql);
-    ASSERT_TRUE(stored) << stored.error().message;
-    const auto factory = open_citydb({.url = *url});
-    ASSERT_TRUE(factory) << factory.error().message;
-    const auto source = (*factory)();
-    const auto found = read_model(**source, query);
-    ASSERT_TRUE(found) << found.error().message;
-    expect_same(*expected, *found, sql_file);
+class HouseByHand : public citydb_support::CityDbTest {
+ protected:
+  /// What was left out of the parts, by name.
+  static std::map<std::string, std::uint32_t> left_out(CitySource& source,
+                                                       const BuildingQuery& query) {
+    std::map<std::string, std::uint32_t> names;
+    const auto selection = source.select(query, {});
+    if (!selection) return names;
+    const auto read = source.read(query, *selection,
+                                  [&](Building&& building) -> Result<void> {
+                                    for (const auto& part : building.parts)
+                                      for (const auto& [name, count] : part.skipped_ade_elements)
+                                        names[name] += count;
+                                    return {};
+                                  },
+                                  {});
+    EXPECT_TRUE(read) << read.error().message;
+    return names;
   }
+
+  /// The house of a file is the one of the rows, when `changes` were made to those of each version.
+  void expect_house_of(const fs::path& file, const std::map<int, std::string>& changes,
+                       const std::map<std::string, std::uint32_t>& names_left_out = {}) {
+    auto from_file = open_files({file}, {});
+    ASSERT_TRUE(from_file);
+    BuildingQuery query;
+    query.bbox = RequestBox{499'900, 5'699'900, 500'100, 5'700'100, {}, Crs{"EPSG:25832"}};
+    query.crs = Crs{"EPSG:25832"};
+    const auto expected = read_model(**from_file, query);
+    ASSERT_TRUE(expected) << expected.error().message;
+    ASSERT_EQ(expected->size(), 1u);
+    EXPECT_EQ(left_out(**from_file, query), names_left_out);
+    for (const auto& [major, change] : changes) {
+      const auto url = server().create_citydb({.major = major, .srid = 25832});
+      ASSERT_TRUE(url) << url.error().message;
+      auto database = citydb_support::Database::open(*url);
+      const auto sql = citydb_support::citydb_file(fmt::format("fixture_v{}.sql", major));
+      ASSERT_TRUE(database && sql);
+      for (const auto& statements : {*sql, change}) {
+        const auto stored = database->run(statements);
+        ASSERT_TRUE(stored) << stored.error().message;
+      }
+      const auto factory = open_citydb({.url = *url});
+      ASSERT_TRUE(factory) << factory.error().message;
+      const auto source = (*factory)();
+      const auto found = read_model(**source, query);
+      ASSERT_TRUE(found) << found.error().message;
+      expect_same(*expected, *found, fmt::format("3DCityDB {}", major));
+      EXPECT_EQ(left_out(**source, query), names_left_out);
+    }
+  }
+};
+
+TEST_F(HouseByHand, IsTheHouseOfTheFile) {
+  expect_house_of(CITYMESH_CITYDB_FIXTURE, {{4, ""}, {5, ""}});
+}
+
+TEST_F(HouseByHand, SurfacesOfExtensionsAreLeftOutAndCountedAsInTheFile) {
+  std::ifstream in(CITYMESH_CITYDB_FIXTURE);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  // The front of the annex, which has a window.
+  const std::string begin = "<bldg:WallSurface gml:id=\"annex_front\">",
+                    end = "</bldg:WallSurface>";
+  const auto at = text.find(begin);
+  ASSERT_NE(at, std::string::npos);
+  text.replace(text.find(end, at), end.size(), "</green:Facade>");
+  text.replace(at, begin.size(), "<green:Facade xmlns:green=\"https://green.test/ade\">");
+  const TempFolder folder;
+  std::ofstream(folder / "house.gml") << text;
+  expect_house_of(
+      folder / "house.gml",
+      {{4,
+        "INSERT INTO citydb.objectclass (id, is_ade_class, classname, superclass_id, ade_id)"
+        " VALUES (10034, 1, 'Facade', 34, 1);"
+        "UPDATE citydb.cityobject SET objectclass_id = 10034 WHERE gmlid = 'annex_front';"
+        "UPDATE citydb.thematic_surface SET objectclass_id = 10034 WHERE id = 7"},
+       {5,
+        "INSERT INTO citydb.objectclass (id, classname, superclass_id, ade_id)"
+        " VALUES (10709, 'Facade', 709, 1);"
+        "UPDATE citydb.feature SET objectclass_id = 10709 WHERE objectid = 'annex_front'"}},
+      {{"Facade", 1}});
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, StoredModel, testing::ValuesIn(cases()),
