@@ -74,23 +74,29 @@ DatabaseCatalogue::DatabaseCatalogue(postgres::Connection& connection, const Sch
   facts_.srs_names = {"", instance.srs_name};
 }
 
-/// What the request wants in the coordinates of the database; none: everything.
-Result<std::optional<Area>> DatabaseCatalogue::area_in_database() const {
-  if (!query_.bbox) return std::optional<Area>{};
-  const auto crs = parse_crs(instance_.srs_name);
+Result<Area> area_in_database(const RequestBox& box, const Instance& instance, AxisOrder order) {
+  const auto crs = parse_crs(instance.srs_name);
   if (!crs) return crs.error();
   std::optional<Transformer> transformer;
-  if (query_.bbox->crs.known() && crs->known()) {
-    auto found = Transformer::create(query_.bbox->crs, *crs);
+  if (box.crs.known() && crs->known()) {
+    auto found = Transformer::create(box.crs, *crs);
     if (!found) return found.error();
     transformer = *std::move(found);
   }
-  auto rings = source::rings_of(*query_.bbox, transformer ? &*transformer : nullptr);
+  auto rings = source::rings_of(box, transformer ? &*transformer : nullptr);
   if (!rings) return rings.error();
-  if (query_.axis_order == AxisOrder::NorthEast)
+  if (order == AxisOrder::NorthEast)
     for (auto& ring : *rings)
       for (auto& point : ring) std::swap(point.x, point.y);
-  return std::optional(Area(*std::move(rings)));
+  return Area(*std::move(rings));
+}
+
+/// What the request wants; none: everything.
+Result<std::optional<Area>> DatabaseCatalogue::wanted_area() const {
+  if (!query_.bbox) return std::optional<Area>{};
+  auto wanted = area_in_database(*query_.bbox, instance_, query_.axis_order);
+  if (!wanted) return wanted.error();
+  return std::optional(*std::move(wanted));
 }
 
 Result<std::vector<std::shared_ptr<const source::FileRecord>>> DatabaseCatalogue::files(
@@ -102,7 +108,7 @@ Result<std::vector<std::shared_ptr<const source::FileRecord>>> DatabaseCatalogue
   record->srs.resize(facts_.srs_names.size());
   auto& srs = record->srs[kSrs];
 
-  const auto area = area_in_database();
+  const auto area = wanted_area();
   if (!area) return area.error();
   if (*area) {
     // Where the box is, buildings are: what is known of the whole database plays no part, so that
@@ -191,7 +197,7 @@ Result<void> DatabaseCatalogue::add_members(std::vector<BuildingRecord>& records
 }
 
 Result<void> DatabaseCatalogue::add_footprints(std::vector<BuildingRecord>& records) {
-  const auto area = area_in_database();
+  const auto area = wanted_area();
   if (!area) return area.error();
   std::vector<std::int64_t> crossing;
   std::unordered_map<std::int64_t, BuildingRecord*> by_id;

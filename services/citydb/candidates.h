@@ -35,7 +35,7 @@ class DatabaseCatalogue final : public source::Catalogue {
   Result<std::vector<Candidate>> candidates(const source::RecordQuery& query);
   Result<void> add_members(std::vector<source::BuildingRecord>& records);
   Result<void> add_footprints(std::vector<source::BuildingRecord>& records);
-  Result<std::optional<source::Area>> area_in_database() const;
+  Result<std::optional<source::Area>> wanted_area() const;
 
   postgres::Connection& connection_;
   const Schema& schema_;
@@ -48,5 +48,9 @@ class DatabaseCatalogue final : public source::Catalogue {
   std::stop_token stop_{};
   std::vector<Candidate> found_{};  ///< by a query for all or for a box; kept from files()
 };
+
+/// What a request wants in the coordinates of the database, with its axes in this order.
+Result<source::Area> area_in_database(const RequestBox& box, const Instance& instance,
+                                      AxisOrder order);
 
 }  // namespace citymesh::citydb

@@ -4,6 +4,7 @@
 
 #include "services/citydb/citydb.h"
 #include "services/citydb/schema.h"
+#include "services/citydb/terrain.h"
 #include "tests/support/citydb/citydb_test.h"
 #include "tests/support/citydb/database.h"
 #include "tests/support/citydb/loader.h"
@@ -81,6 +82,12 @@ TEST_P(PlansOfStatements, NoTableOfObjectsOrGeometryIsReadThrough) {
   statements.push_back(schema->candidates_by_id(*instance, gml_ids));
   statements.push_back(schema->members(*instance, ids));
   EXPECT_LE(statements.size(), 11u) << "a constant number, none per building";
+  const auto geometry = database->value(old ? "SELECT max(root_id) FROM surface_geometry"
+                                            : "SELECT max(id) FROM geometry_data");
+  ASSERT_TRUE(geometry) << geometry.error().message;
+  const std::vector<std::int64_t> geometries{std::stoll(*geometry)};
+  statements.push_back(citydb::terrain_components(*instance, box, 1000));
+  statements.push_back(citydb::terrain_faces(*instance, geometries, box, 1000));
   for (const auto& statement : statements) {
     const auto plan = database->rows(
         "EXPLAIN " + citydb_support::with_literals(statement.sql, statement.parameters));

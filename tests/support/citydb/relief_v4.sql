@@ -1,0 +1,56 @@
+-- Terrain in a 3DCityDB of version 4 (SRID 25832), written from what is known of how the importer stores relief, without the loader of
+-- the tests; relief_v5.sql is the same in version 5. A hill of four triangles (and two whose corners lie on a line) beside a field of
+-- two, both of LoD2, on a country of LoD1; relief that is no TIN, has no geometry or another face than triangles; what has ended, or
+-- belongs to what has; a TIN that belongs to nothing. Comments name the sections of the description of the schema:
+-- 1.2 tables, 1.3 classes, 1.4 geometry, 1.7 terrain.
+SET search_path TO citydb, public;
+
+-- 1.3: 14 ReliefFeature, 16 TINRelief, 17 MassPointRelief, 18 BreaklineRelief, 19 RasterRelief
+INSERT INTO cityobject (id, objectclass_id, gmlid, envelope, creation_date, termination_date) VALUES
+  (1, 14, 'relief', 'SRID=25832;POLYGON Z ((499900 5699900 90, 500200 5699900 90, 500200 5700200 105, 499900 5700200 105, 499900 5699900 90))', '2020-01-01T00:00:00Z', NULL),
+  (2, 16, 'hill', 'SRID=25832;POLYGON Z ((500000 5700000 90, 500020 5700000 90, 500020 5700020 105, 500000 5700020 105, 500000 5700000 90))', '2020-01-01T00:00:00Z', NULL),
+  (3, 16, 'field', 'SRID=25832;POLYGON Z ((500020 5700000 90, 500040 5700000 90, 500040 5700020 105, 500020 5700020 105, 500020 5700000 90))', '2020-01-01T00:00:00Z', NULL),
+  (4, 16, 'country', 'SRID=25832;POLYGON Z ((499900 5699900 90, 500200 5699900 90, 500200 5700200 105, 499900 5700200 105, 499900 5699900 90))', '2020-01-01T00:00:00Z', NULL),
+  (5, 17, 'survey', 'SRID=25832;POLYGON Z ((500000 5700000 90, 500020 5700000 90, 500020 5700020 105, 500000 5700020 105, 500000 5700000 90))', '2020-01-01T00:00:00Z', NULL),
+  (6, 18, 'ditch', 'SRID=25832;POLYGON Z ((500000 5700000 90, 500020 5700000 90, 500020 5700020 105, 500000 5700020 105, 500000 5700000 90))', '2020-01-01T00:00:00Z', NULL),
+  (7, 19, 'scan', 'SRID=25832;POLYGON Z ((500000 5700000 90, 500020 5700000 90, 500020 5700020 105, 500000 5700020 105, 500000 5700000 90))', '2020-01-01T00:00:00Z', NULL),
+  (8, 16, 'hill', 'SRID=25832;POLYGON Z ((500000 5700000 90, 500020 5700000 90, 500020 5700020 105, 500000 5700020 105, 500000 5700000 90))', '2020-01-01T00:00:00Z', '2024-05-06T00:00:00Z'),
+  (9, 14, 'old_relief', 'SRID=25832;POLYGON Z ((500000 5700000 90, 500020 5700000 90, 500020 5700020 105, 500000 5700020 105, 500000 5700000 90))', '2020-01-01T00:00:00Z', '2024-05-06T00:00:00Z'),
+  (10, 16, 'left_behind', 'SRID=25832;POLYGON Z ((500000 5700000 90, 500020 5700000 90, 500020 5700020 105, 500000 5700020 105, 500000 5700000 90))', '2020-01-01T00:00:00Z', NULL),
+  (11, 16, 'quads', 'SRID=25832;POLYGON Z ((500060 5700000 90, 500080 5700000 90, 500080 5700020 105, 500060 5700020 105, 500060 5700000 90))', '2020-01-01T00:00:00Z', NULL),
+  (12, 16, 'hollow', 'SRID=25832;POLYGON Z ((500000 5700000 90, 500020 5700000 90, 500020 5700020 105, 500000 5700020 105, 500000 5700000 90))', '2020-01-01T00:00:00Z', NULL),
+  (13, 16, 'alone', 'SRID=25832;POLYGON Z ((500040 5700000 90, 500060 5700000 90, 500060 5700020 105, 500040 5700020 105, 500040 5700000 90))', '2020-01-01T00:00:00Z', NULL);
+
+-- 1.4: only leaves have a geometry; 1.7: a TriangulatedSurface with one leaf per triangle
+INSERT INTO surface_geometry (id, gmlid, parent_id, root_id, is_solid, is_composite, is_triangulated, is_xlink, is_reverse, geometry, cityobject_id) VALUES
+  (200, 'hill_tin', NULL, 200, 0, 0, 1, 0, 0, NULL, 2),
+  (201, 'hill_tin_1', 200, 200, 0, 0, 0, 0, 0, 'SRID=25832;POLYGON Z ((500000 5700000 100, 500020 5700000 100, 500010 5700010 105, 500000 5700000 100))', 2),
+  (202, 'hill_tin_2', 200, 200, 0, 0, 0, 0, 0, 'SRID=25832;POLYGON Z ((500020 5700000 100, 500020 5700020 100, 500010 5700010 105, 500020 5700000 100))', 2),
+  (203, 'hill_tin_3', 200, 200, 0, 0, 0, 0, 0, 'SRID=25832;POLYGON Z ((500020 5700020 100, 500000 5700020 100, 500010 5700010 105, 500020 5700020 100))', 2),
+  (204, 'hill_tin_4', 200, 200, 0, 0, 0, 0, 0, 'SRID=25832;POLYGON Z ((500000 5700020 100, 500000 5700000 100, 500010 5700010 105, 500000 5700020 100))', 2),
+  (205, 'hill_tin_5', 200, 200, 0, 0, 0, 0, 0, 'SRID=25832;POLYGON Z ((500000 5700000 100, 500020 5700000 100, 500020 5700000 100, 500000 5700000 100))', 2),
+  (206, 'hill_tin_6', 200, 200, 0, 0, 0, 0, 0, 'SRID=25832;POLYGON Z ((500000 5700000 100, 500010 5700000 100, 500020 5700000 100, 500000 5700000 100))', 2),
+  (300, 'field_tin', NULL, 300, 0, 0, 1, 0, 0, NULL, 3),
+  (301, 'field_tin_1', 300, 300, 0, 0, 0, 0, 0, 'SRID=25832;POLYGON Z ((500020 5700000 100, 500040 5700000 100, 500040 5700020 100, 500020 5700000 100))', 3),
+  (302, 'field_tin_2', 300, 300, 0, 0, 0, 0, 0, 'SRID=25832;POLYGON Z ((500020 5700000 100, 500040 5700020 100, 500020 5700020 100, 500020 5700000 100))', 3),
+  (400, 'country_tin', NULL, 400, 0, 0, 1, 0, 0, NULL, 4),
+  (401, 'country_tin_1', 400, 400, 0, 0, 0, 0, 0, 'SRID=25832;POLYGON Z ((499900 5699900 100, 500200 5699900 100, 500200 5700200 100, 499900 5699900 100))', 4),
+  (402, 'country_tin_2', 400, 400, 0, 0, 0, 0, 0, 'SRID=25832;POLYGON Z ((499900 5699900 100, 500200 5700200 100, 499900 5700200 100, 499900 5699900 100))', 4),
+  (800, 'old_hill_tin', NULL, 800, 0, 0, 1, 0, 0, NULL, 8),
+  (801, 'old_hill_tin_1', 800, 800, 0, 0, 0, 0, 0, 'SRID=25832;POLYGON Z ((500000 5700000 90, 500020 5700000 90, 500020 5700020 90, 500000 5700000 90))', 8),
+  (1000, 'left_behind_tin', NULL, 1000, 0, 0, 1, 0, 0, NULL, 10),
+  (1001, 'left_behind_tin_1', 1000, 1000, 0, 0, 0, 0, 0, 'SRID=25832;POLYGON Z ((500000 5700000 90, 500020 5700000 90, 500020 5700020 90, 500000 5700000 90))', 10),
+  (1100, 'quads_tin', NULL, 1100, 0, 0, 1, 0, 0, NULL, 11),
+  (1101, 'quads_tin_1', 1100, 1100, 0, 0, 0, 0, 0, 'SRID=25832;POLYGON Z ((500060 5700000 100, 500080 5700000 100, 500080 5700020 100, 500060 5700000 100))', 11),
+  (1102, 'quads_tin_2', 1100, 1100, 0, 0, 0, 0, 0, 'SRID=25832;POLYGON Z ((500060 5700000 100, 500080 5700020 100, 500070 5700020 100, 500060 5700020 100, 500060 5700000 100))', 11),
+  (1300, 'alone_tin', NULL, 1300, 0, 0, 1, 0, 0, NULL, 13),
+  (1301, 'alone_tin_1', 1300, 1300, 0, 0, 0, 0, 0, 'SRID=25832;POLYGON Z ((500040 5700000 100, 500060 5700000 100, 500040 5700020 100, 500040 5700000 100))', 13);
+
+-- 1.7: relief_feature - relief_feat_to_rel_comp - relief_component, and the row of a TIN
+INSERT INTO relief_feature (id, objectclass_id, lod) VALUES (1, 14, 2), (9, 14, 2);
+INSERT INTO relief_component (id, objectclass_id, lod) VALUES
+  (2, 16, 2), (3, 16, 2), (4, 16, 1), (5, 17, 2), (6, 18, 2), (7, 19, 2), (8, 16, 2), (10, 16, 2), (11, 16, 2), (12, 16, 2), (13, 16, 2);
+INSERT INTO relief_feat_to_rel_comp (relief_component_id, relief_feature_id) VALUES
+  (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (10, 9), (11, 1), (12, 1);
+INSERT INTO tin_relief (id, objectclass_id, surface_geometry_id) VALUES
+  (2, 16, 200), (3, 16, 300), (4, 16, 400), (8, 16, 800), (10, 16, 1000), (11, 16, 1100), (12, 16, NULL), (13, 16, 1300);
