@@ -220,7 +220,7 @@ Result<void> serve(const ServeOptions& options) {
       {.max_open_jobs = options.max_open_jobs,
        .max_open_jobs_per_owner = options.max_client_jobs,
        .check_inputs = data->check_inputs,
-       .estimate = estimator(data->open),
+       .estimate = estimator(data->open_to_count),
        .check_callback = [allow_private = options.allow_private_callbacks](const std::string& uri) {
          return check_callback_uri(uri, allow_private);
        }});

@@ -64,10 +64,21 @@ Result<SourceFactory> open_database(const ServeOptions& options) {
   return SourceFactory(*std::move(database));
 }
 
-Result<SourceFactory> open_service(const ServeOptions& options) {
-  auto service = open_wfs({.url = options.source, .max_features = options.max_job_buildings});
+Result<void> open_service(const ServeOptions& options, ServedData& served) {
+  const auto service = open_wfs({.url = options.source, .max_features = options.max_job_buildings});
   if (!service) return service.error();
-  return SourceFactory(*std::move(service));
+  served.open = within_limits([open = *service] { return open(WfsUse::Reading); }, options);
+  served.open_to_count =
+      within_limits([open = *service] { return open(WfsUse::Counting); }, options);
+  return {};
+}
+
+Result<void> open_data(const ServeOptions& options, Log& log, const std::stop_token& stop,
+                       ServedData& served) {
+  auto opened = options.source.empty() ? open_folder(options, log, stop) : open_database(options);
+  if (!opened) return opened.error();
+  served.open = served.open_to_count = within_limits(*std::move(opened), options);
+  return {};
 }
 
 Result<void> check_inputs(const Inputs& inputs, double most_km2, bool may_write) {
@@ -88,11 +99,9 @@ bool is_web(const std::string& source) {
 Result<ServedData> open_served_data(const ServeOptions& options, Log& log,
                                     const std::stop_token& stop) {
   ServedData served;
-  auto opened = options.source.empty()   ? open_folder(options, log, stop)
-                : is_web(options.source) ? open_service(options)
-                                         : open_database(options);
+  const auto opened = is_web(options.source) ? open_service(options, served)
+                                             : open_data(options, log, stop, served);
   if (!opened) return opened.error();
-  served.open = within_limits(*std::move(opened), options);
   if (!options.write_back_schema.empty()) {
     auto write_back = open_write_back(
         {.url = options.write_back_url.empty() ? options.source : options.write_back_url,

@@ -16,8 +16,9 @@ namespace citymesh {
 
 /// What the jobs of a service read.
 struct ServedData {
-  std::string name{};    ///< for people: a folder, or an address without secrets
-  SourceFactory open{};  ///< within the limits of a job
+  std::string name{};             ///< for people: a folder, or an address without secrets
+  SourceFactory open{};           ///< within the limits of a job
+  SourceFactory open_to_count{};  ///< the same for estimates, which never read
   /// Text that differs whenever what jobs read does; none: unknown.
   std::function<std::string()> version{};
   std::unique_ptr<WriteBackStore> write_back{};  ///< none: jobs cannot write back

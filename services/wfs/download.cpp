@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -21,6 +22,48 @@ constexpr std::size_t kIdsAtOnce = 50;
 constexpr double kBoxGrowth = 0.01;
 constexpr double kBoxMargin = 1e-6;  // beyond any rounding
 
+// "minx,miny,maxx,maxy,crs"
+Result<std::string> box_of(const Server& server, const BuildingQuery& query) {
+  const RequestBox& box = *query.bbox;
+  auto ring = source::densified_ring(box.min_x, box.min_y, box.max_x, box.max_y);
+  const Crs from = box.crs.known() ? box.crs : query.crs.known() ? query.crs : server.crs;
+  const auto transformer = Transformer::create(from, server.crs);
+  if (!transformer) return transformer.error();
+  if (auto moved = transformer->apply(ring); !moved)
+    return fail(ErrorCode::InvalidArgument, "bbox: " + moved.error().message);
+  Box3 there;
+  for (const Point3& point : ring) there.add(point);
+  const double margin =
+      kBoxGrowth * std::max(there.max.x - there.min.x, there.max.y - there.min.y) + kBoxMargin;
+  there.add(Point3{there.min.x - margin, there.min.y - margin, 0});
+  there.add(Point3{there.max.x + margin, there.max.y + margin, 0});
+  if (server.north_first) there = source::with_axes_swapped(there);
+  return fmt::format("{:.9f},{:.9f},{:.9f},{:.9f},{}", there.min.x, there.min.y, there.max.x,
+                     there.max.y, server.srs_name);
+}
+
+Parameters request(const Server& server, const Parameters& filter) {
+  Parameters all{{"SERVICE", "WFS"},
+                 {"VERSION", server.version},
+                 {"REQUEST", "GetFeature"},
+                 {"TYPENAMES", server.types}};
+  if (!server.namespaces.empty()) all.emplace_back("NAMESPACES", server.namespaces);
+  if (!server.options.output_format.empty())
+    all.emplace_back("OUTPUTFORMAT", server.options.output_format);
+  if (!server.is_default_crs) all.emplace_back("SRSNAME", server.srs_name);
+  all.insert(all.end(), filter.begin(), filter.end());
+  return all;
+}
+
+std::optional<Error> over_limit(const Server& server, std::uint64_t features) {
+  const auto most = server.options.max_features;
+  if (most == 0 || features <= most) return std::nullopt;
+  return server.error(ErrorCode::ResourceExhausted,
+                      fmt::format("{} features are asked for, at most {} may be; choose a smaller "
+                                  "`bbox`, or `object_ids`",
+                                  features, most));
+}
+
 class Download {
  public:
   Download(const Server& server, const std::filesystem::path& folder, const RunContext& context)
@@ -28,7 +71,7 @@ class Download {
 
   Result<Content> run(const BuildingQuery& query) {
     if (query.bbox) {
-      auto box = box_of(query);
+      auto box = box_of(server_, query);
       if (!box) return box.error();
       if (auto done = get_pages({{"BBOX", *box}}); !done) return done.error();
     } else if (query.object_ids.empty()) {
@@ -46,39 +89,6 @@ class Download {
   }
 
  private:
-  // "minx,miny,maxx,maxy,crs"
-  Result<std::string> box_of(const BuildingQuery& query) const {
-    const RequestBox& box = *query.bbox;
-    auto ring = source::densified_ring(box.min_x, box.min_y, box.max_x, box.max_y);
-    const Crs from = box.crs.known() ? box.crs : query.crs.known() ? query.crs : server_.crs;
-    const auto transformer = Transformer::create(from, server_.crs);
-    if (!transformer) return transformer.error();
-    if (auto moved = transformer->apply(ring); !moved)
-      return fail(ErrorCode::InvalidArgument, "bbox: " + moved.error().message);
-    Box3 there;
-    for (const Point3& point : ring) there.add(point);
-    const double margin =
-        kBoxGrowth * std::max(there.max.x - there.min.x, there.max.y - there.min.y) + kBoxMargin;
-    there.add(Point3{there.min.x - margin, there.min.y - margin, 0});
-    there.add(Point3{there.max.x + margin, there.max.y + margin, 0});
-    if (server_.north_first) there = source::with_axes_swapped(there);
-    return fmt::format("{:.9f},{:.9f},{:.9f},{:.9f},{}", there.min.x, there.min.y, there.max.x,
-                       there.max.y, server_.srs_name);
-  }
-
-  Parameters request(const Parameters& filter) const {
-    Parameters all{{"SERVICE", "WFS"},
-                   {"VERSION", server_.version},
-                   {"REQUEST", "GetFeature"},
-                   {"TYPENAMES", server_.types}};
-    if (!server_.namespaces.empty()) all.emplace_back("NAMESPACES", server_.namespaces);
-    if (!server_.options.output_format.empty())
-      all.emplace_back("OUTPUTFORMAT", server_.options.output_format);
-    if (!server_.is_default_crs) all.emplace_back("SRSNAME", server_.srs_name);
-    all.insert(all.end(), filter.begin(), filter.end());
-    return all;
-  }
-
   struct Page {
     AnswerHead head{};
     Pages::Added added{};
@@ -114,12 +124,9 @@ class Download {
       return server_.error(added.error().code,
                            "an answer cannot be read: " + added.error().message);
     page.added = *added;
-    const auto features = std::max(page.head.matched.value_or(0), pages_->buildings());
-    if (options.max_features > 0 && features > options.max_features)
-      return server_.error(ErrorCode::ResourceExhausted,
-                           fmt::format("{} features are asked for, at most {} may be; choose a "
-                                       "smaller `bbox`, or `object_ids`",
-                                       features, options.max_features));
+    if (auto error =
+            over_limit(server_, std::max(page.head.matched.value_or(0), pages_->buildings())))
+      return *std::move(error);
     return page;
   }
 
@@ -134,7 +141,7 @@ class Download {
   // Links to the next page lead on, else STARTINDEX. A server may state how many features there
   // are, or not; may give fewer at once than asked for; may not know pages at all.
   Result<void> get_pages(const Parameters& filter) {
-    const auto base = request(filter);
+    const auto base = request(server_, filter);
     if (!server_.pages.value_or(true)) return get_all_at_once(base);
     const std::uint64_t count =
         std::min<std::uint64_t>(server_.options.page, server_.count_default.value_or(UINT64_MAX));
@@ -198,7 +205,7 @@ class Download {
   Result<void> get_ids(std::span<const std::string> ids) {
     std::string list;
     for (const auto& id : ids) list += (list.empty() ? "" : ",") + id;
-    const auto page = get(with_parameters(server_.url, request({{"RESOURCEID", list}})));
+    const auto page = get(with_parameters(server_.url, request(server_, {{"RESOURCEID", list}})));
     if (page) return {};
     if (page.error().code != ErrorCode::NotFound) return page.error();
     if (ids.size() == 1) return {};
@@ -220,6 +227,24 @@ class Download {
 Result<Content> download(const Server& server, const BuildingQuery& query,
                          const std::filesystem::path& folder, const RunContext& context) {
   return Download(server, folder, context).run(query);
+}
+
+Result<std::optional<std::uint64_t>> count(const Server& server, const BuildingQuery& query,
+                                           const RunContext& context) {
+  Parameters filter{{"RESULTTYPE", "hits"}};
+  if (query.bbox) {
+    auto box = box_of(server, query);
+    if (!box) return box.error();
+    filter.emplace_back("BBOX", *std::move(box));
+  }
+  const auto answer =
+      get_features(server, with_parameters(server.url, request(server, filter)), context.stop);
+  if (!answer && answer.error().code == ErrorCode::FailedPrecondition)
+    return std::optional<std::uint64_t>{};
+  if (!answer) return answer.error();
+  const auto& matched = answer->head.matched;
+  if (auto error = over_limit(server, matched.value_or(0))) return *std::move(error);
+  return matched;
 }
 
 }  // namespace citymesh::wfs

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,5 +22,10 @@ struct Content {
 /// CitySource::select and open_wfs.
 Result<Content> download(const Server& server, const BuildingQuery& query,
                          const std::filesystem::path& folder, const RunContext& context);
+
+/// How many features there are in the box, a little enlarged, or altogether, in the server's own
+/// words; none: it does not say. Errors: as download().
+Result<std::optional<std::uint64_t>> count(const Server& server, const BuildingQuery& query,
+                                           const RunContext& context);
 
 }  // namespace citymesh::wfs

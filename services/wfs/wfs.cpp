@@ -1,5 +1,7 @@
 #include "services/wfs/wfs.h"
 
+#include <fmt/format.h>
+
 #include <set>
 #include <utility>
 
@@ -23,12 +25,18 @@ struct Downloaded {
 
 class WfsSource final : public CitySource {
  public:
-  explicit WfsSource(std::shared_ptr<const Server> server) : server_(std::move(server)) {}
+  WfsSource(std::shared_ptr<const Server> server, WfsUse use)
+      : server_(std::move(server)), use_(use) {}
 
   Result<Selection> select(const BuildingQuery& query, const RunContext& context) override {
     // What is wrong with the query itself is said before anything is downloaded.
     if (auto checked = over(std::make_shared<Pages>())->select(query, context); !checked)
       return checked.error();
+    if (use_ == WfsUse::Counting && can_be_counted(query)) {
+      const auto counted = wfs::count(*server_, query, context);
+      if (!counted) return counted.error();
+      if (*counted) return selection_of(**counted, query, context);
+    }
     auto folder = source::TemporaryFolder::make("to keep what a WFS answers");
     if (!folder) return folder.error();
     const auto content = wfs::download(*server_, query, folder->path(), context);
@@ -71,6 +79,42 @@ class WfsSource final : public CitySource {
                                   {.limits = server_->options.limits, .assume_crs = server_->crs});
   }
 
+  /// Whether the number of buildings, and where to work, can be told without any of them.
+  bool can_be_counted(const BuildingQuery& query) const {
+    if (!query.object_ids.empty()) return false;
+    if (query.bbox || query.crs.known()) return true;
+    const auto facts = describe_crs(server_->crs);
+    return facts && !facts->geographic;
+  }
+
+  /// A selection of so many buildings of which nothing else is known.
+  Result<Selection> selection_of(std::uint64_t buildings, const BuildingQuery& query,
+                                 const RunContext& context) const {
+    BuildingQuery here = query;
+    if (!here.crs.known()) {
+      auto working = working_crs_for_nothing(query);
+      if (!working) return working.error();
+      here.crs = std::move(*working);
+    }
+    auto selection = over(std::make_shared<Pages>())->select(here, context);
+    if (!selection) return selection.error();
+    selection->buildings = buildings;
+    selection->expected_triangles.reset();
+    selection->details.reset();
+    if (query.bbox && (!query.bbox->rings.empty() || query.bbox->z_range_m ||
+                       query.bbox_rule != BboxRule::Intersects))
+      selection->warnings.push_back(
+          fmt::format("WFS {}: the server counts all whose envelope meets the box, of which fewer "
+                      "will be chosen",
+                      server_->shown));
+    selection->inputs = {{.file = server_->shown,
+                          .format = "WFS " + server_->version,
+                          .state = "read",
+                          .crs = server_->crs.id,
+                          .buildings = buildings}};
+    return selection;
+  }
+
   Result<Crs> working_crs_for_nothing(const BuildingQuery& query) const {
     Point3 centre{};
     if (query.bbox) {
@@ -98,6 +142,7 @@ class WfsSource final : public CitySource {
   }
 
   std::shared_ptr<const Server> server_;
+  const WfsUse use_;
 };
 
 }  // namespace
@@ -105,9 +150,9 @@ class WfsSource final : public CitySource {
 Result<WfsFactory> open_wfs(const WfsOptions& options) {
   auto looked = wfs::look_at(options);
   if (!looked) return looked.error();
-  return WfsFactory([server = std::make_shared<const Server>(
-                         std::move(*looked))]() -> Result<std::unique_ptr<CitySource>> {
-    return std::unique_ptr<CitySource>(std::make_unique<WfsSource>(server));
+  return WfsFactory([server = std::make_shared<const Server>(std::move(*looked))](
+                        WfsUse use) -> Result<std::unique_ptr<CitySource>> {
+    return std::unique_ptr<CitySource>(std::make_unique<WfsSource>(server, use));
   });
 }
 

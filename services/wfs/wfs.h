@@ -23,8 +23,12 @@ struct WfsOptions {
   ReadLimits limits{};
 };
 
-/// Opens sources that read one Web Feature Service 2.0.
-using WfsFactory = std::function<Result<std::unique_ptr<CitySource>>()>;
+/// What a source is for. One that counts selects without downloading wherever the server says how
+/// many buildings there are; these cannot be read.
+enum class WfsUse { Reading, Counting };
+
+/// Opens sources over one Web Feature Service 2.0.
+using WfsFactory = std::function<Result<std::unique_ptr<CitySource>>(WfsUse use)>;
 
 /// `select` downloads what a box (enlarged a little) or the ids ask for into a folder of its own
 /// below the system's for temporary files, and chooses from that as from files; the folder lives as

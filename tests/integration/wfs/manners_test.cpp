@@ -143,7 +143,7 @@ TEST_F(WfsManners, ASlowServerEndsWithTheTime) {
   options.timeout_s = 0.2;
   const auto hasty = open_wfs(options);
   ASSERT_TRUE(hasty) << hasty.error().message;
-  const auto selection = (*(*hasty)())->select({}, {});
+  const auto selection = (*(*hasty)(WfsUse::Reading))->select({}, {});
   ASSERT_FALSE(selection);
   EXPECT_EQ(selection.error().code, ErrorCode::DeadlineExceeded);
 }
@@ -158,7 +158,7 @@ TEST_F(WfsManners, AStopEndsTheWaiting) {
     while (server.requests().empty()) std::this_thread::yield();
     stop.request_stop();
   });
-  const auto selection = (*(*factory)())->select({}, context);
+  const auto selection = (*(*factory)(WfsUse::Reading))->select({}, context);
   ASSERT_FALSE(selection);
   EXPECT_EQ(selection.error().code, ErrorCode::Cancelled);
 }

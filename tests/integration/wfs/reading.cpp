@@ -78,7 +78,7 @@ Reading read_wfs(const TestWfs& server, const BuildingQuery& query) {
 Reading read_wfs(const WfsOptions& options, const BuildingQuery& query) {
   const auto factory = open_wfs(options);
   if (!factory) return {.error = factory.error()};
-  auto source = (*factory)();
+  auto source = (*factory)(WfsUse::Reading);
   if (!source) return {.error = source.error()};
   return read(**source, query);
 }

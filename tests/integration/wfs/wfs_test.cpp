@@ -209,7 +209,7 @@ TEST(Wfs, DownloadsArePrivateAndGoneWithTheSelection) {
   const TestWfs server(kBerlin);
   const auto factory = open_wfs(options_for(server));
   ASSERT_TRUE(factory) << factory.error().message;
-  const auto source = (*factory)();
+  const auto source = (*factory)(WfsUse::Reading);
   ASSERT_TRUE(source);
   const BuildingQuery query{.bbox = berlin_box()};
   {
@@ -241,7 +241,7 @@ TEST(Wfs, SelectionsOfOthersAreRefused) {
   const TestWfs server(kBerlin);
   const auto factory = open_wfs(options_for(server));
   ASSERT_TRUE(factory);
-  const auto source = (*factory)();
+  const auto source = (*factory)(WfsUse::Reading);
   const auto done = (*source)->read({}, {}, [](Building&&) -> Result<void> { return {}; }, {});
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().code, ErrorCode::FailedPrecondition);
@@ -253,6 +253,75 @@ TEST(Wfs, AWrongBoxIsRefusedBeforeTheServerIsAsked) {
   std::swap(box.min_x, box.max_x);
   EXPECT_EQ(read_wfs(server, {.bbox = box}).error.code, ErrorCode::InvalidArgument);
   EXPECT_THAT(server.requests(), IsEmpty());
+}
+
+Result<Selection> counted(const TestWfs& server, const BuildingQuery& query) {
+  const auto factory = open_wfs(options_for(server));
+  if (!factory) return factory.error();
+  const auto source = (*factory)(WfsUse::Counting);
+  if (!source) return source.error();
+  auto selection = (*source)->select(query, {});
+  if (selection && !selection->details) {
+    const auto read =
+        (*source)->read(query, *selection, [](Building&&) { return Result<void>{}; }, {});
+    EXPECT_FALSE(read);
+    EXPECT_EQ(read ? ErrorCode::Internal : read.error().code, ErrorCode::FailedPrecondition);
+  }
+  return selection;
+}
+
+TEST(WfsCounts, AreTheServersWithoutABuildingOnTheWay) {
+  const TestWfs server(kBerlin);
+  for (const auto& query : {BuildingQuery{.bbox = berlin_box()}, BuildingQuery{}}) {
+    const auto file = read_file(kBerlin, query);
+    const auto found = counted(server, query);
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_GE(found->buildings, file.selection.buildings);
+    EXPECT_LE(found->buildings, file.selection.buildings * 3 / 2);
+    EXPECT_EQ(found->crs.id, file.selection.crs.id);
+    EXPECT_FALSE(found->expected_triangles);
+    EXPECT_THAT(found->warnings, IsEmpty());
+    ASSERT_THAT(found->inputs, SizeIs(1));
+    EXPECT_EQ(found->inputs.front().buildings, found->buildings);
+  }
+  ASSERT_THAT(server.requests(), SizeIs(2));
+  for (const auto& request : server.requests()) EXPECT_EQ(request.at("RESULTTYPE"), "hits");
+}
+
+TEST(WfsCounts, SayWhereFewerWillBeChosen) {
+  const TestWfs server(kBerlin);
+  const auto found = counted(server, {.bbox = berlin_box(), .bbox_rule = BboxRule::Within});
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_THAT(found->warnings, ElementsAre(HasSubstr("fewer will be chosen")));
+}
+
+TEST(WfsCounts, AreMadeByDownloadWhereTheServerDoesNotSayOrForIds) {
+  Manners manners;
+  manners.knows_matched = false;
+  const TestWfs silent(kBerlin, manners);
+  const BuildingQuery box{.bbox = berlin_box()};
+  const auto whole = counted(silent, box);
+  ASSERT_TRUE(whole) << whole.error().message;
+  const auto file = read_file(kBerlin, box);
+  EXPECT_EQ(whole->buildings, file.selection.buildings);
+
+  const TestWfs server(kBerlin);
+  const auto one = counted(server, {.object_ids = {file.selection.object_ids.front(), "nobody"}});
+  ASSERT_TRUE(one) << one.error().message;
+  EXPECT_EQ(one->buildings, 1u);
+  EXPECT_THAT(one->missing_ids, ElementsAre("nobody"));
+}
+
+TEST(WfsCounts, KeepTheLimitOfAJob) {
+  const TestWfs server(kBerlin);
+  auto options = options_for(server);
+  options.max_features = 10;
+  const auto factory = open_wfs(options);
+  ASSERT_TRUE(factory) << factory.error().message;
+  const auto refused = (*(*factory)(WfsUse::Counting))->select({.bbox = berlin_box()}, {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::ResourceExhausted);
+  EXPECT_THAT(refused.error().message, HasSubstr("at most 10 may be"));
 }
 
 }  // namespace
