@@ -147,7 +147,11 @@ TEST_F(ServeTest, AJobThatKillsItsServerIsFailedAfterTheLastTry) {
   const auto job = server.ended(id);
   EXPECT_EQ(job.state(), v1::FAILED);
   EXPECT_THAT(job.message(), HasSubstr("the worker died 2 times"));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "state" / "results" / id)) << "half a result";
+  // The files go once the job has ended, not before.
+  const auto half_a_result = folder_ / "state" / "results" / id;
+  for (int i = 0; i < 500 && std::filesystem::exists(half_a_result); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_FALSE(std::filesystem::exists(half_a_result));
 }
 
 TEST_F(ServeTest, AGracefulStopHandsTheJobToTheNextServer) {
