@@ -6,6 +6,7 @@
 #include "core/write/boundaries.h"
 #include "core/write/solids.h"
 #include "services/citydb/copy_rows.h"
+#include "services/citydb/history_sql.h"
 #include "services/citydb/stored_geometry.h"
 #include "services/citydb/version_writer.h"
 
@@ -256,6 +257,8 @@ class WriterV4 final : public VersionWriter {
       " FROM STDIN"};
 };
 
+constexpr ObjectTable kObjects{"cityobject", "gmlid"};
+
 /// All objects of the buildings in `tops` (id, ended) get `to` for termination_date.
 std::string end_of_buildings(std::string_view tops, std::string_view to, std::string_view which) {
   return fmt::format(
@@ -282,19 +285,10 @@ std::unique_ptr<VersionWriter> writer_v4(postgres::Connection& connection, Named
 }
 
 const VersionSql& sql_v4() {
-  static const std::string restore = end_of_buildings(
-      "SELECT old.id, old.termination_date FROM cityobject mine JOIN cityobject old"
-      " ON old.gmlid = mine.gmlid AND old.objectclass_id = mine.objectclass_id"
-      " WHERE mine.lineage = $1 AND mine.creation_date <> now() AND mine.termination_date IS NULL"
-      " AND old.termination_date = GREATEST(mine.creation_date, old.creation_date)",
-      "NULL", "c.termination_date = tree.ended");
-  static const std::string supersede = end_of_buildings(
-      "SELECT old.id, GREATEST(now(), old.creation_date) FROM cityobject mine JOIN cityobject old"
-      " ON old.gmlid = mine.gmlid AND old.objectclass_id = mine.objectclass_id"
-      " WHERE mine.id = ANY($1::bigint[]) AND old.termination_date IS NULL"
-      " AND (old.creation_date IS DISTINCT FROM now() OR old.lineage IS DISTINCT FROM "
-      "mine.lineage)",
-      "tree.ended", "c.termination_date IS NULL");
+  static const std::string restore =
+      end_of_buildings(ended_by_lineage(kObjects), "NULL", "c.termination_date = tree.ended");
+  static const std::string supersede =
+      end_of_buildings(current_beside(kObjects), "tree.ended", "c.termination_date IS NULL");
   static const VersionSql sql{
       .names = "SELECT 'class ' || classname, id::bigint FROM objectclass WHERE ade_id IS NULL",
       .lock =

@@ -5,6 +5,7 @@
 #include "core/write/boundaries.h"
 #include "core/write/solids.h"
 #include "services/citydb/copy_rows.h"
+#include "services/citydb/history_sql.h"
 #include "services/citydb/stored_geometry.h"
 #include "services/citydb/version_writer.h"
 
@@ -218,6 +219,8 @@ class WriterV5 final : public VersionWriter {
       " val_feature_id, val_relation_type) FROM STDIN"};
 };
 
+constexpr ObjectTable kObjects{"feature", "objectid"};
+
 /// All features below the rows of `tops` (id, ended) get `to` for termination_date.
 std::string end_of_tree(std::string_view tops, std::string_view to, std::string_view which) {
   return fmt::format(
@@ -236,19 +239,10 @@ std::unique_ptr<VersionWriter> writer_v5(postgres::Connection& connection, Named
 }
 
 const VersionSql& sql_v5() {
-  static const std::string restore = end_of_tree(
-      "SELECT old.id, old.termination_date FROM feature mine JOIN feature old"
-      " ON old.objectid = mine.objectid AND old.objectclass_id = mine.objectclass_id"
-      " WHERE mine.lineage = $1 AND mine.creation_date <> now() AND mine.termination_date IS NULL"
-      " AND old.termination_date = GREATEST(mine.creation_date, old.creation_date)",
-      "NULL", "f.termination_date = tree.ended");
-  static const std::string supersede = end_of_tree(
-      "SELECT old.id, GREATEST(now(), old.creation_date) FROM feature mine JOIN feature old"
-      " ON old.objectid = mine.objectid AND old.objectclass_id = mine.objectclass_id"
-      " WHERE mine.id = ANY($1::bigint[]) AND old.termination_date IS NULL"
-      " AND (old.creation_date IS DISTINCT FROM now() OR old.lineage IS DISTINCT FROM "
-      "mine.lineage)",
-      "tree.ended", "f.termination_date IS NULL");
+  static const std::string restore =
+      end_of_tree(ended_by_lineage(kObjects), "NULL", "f.termination_date = tree.ended");
+  static const std::string supersede =
+      end_of_tree(current_beside(kObjects), "tree.ended", "f.termination_date IS NULL");
   static const VersionSql sql{
       .names =
           "SELECT 'class ' || classname, id::bigint FROM objectclass WHERE ade_id IS NULL"
